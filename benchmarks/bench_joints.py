@@ -140,7 +140,7 @@ def transforms_of_100_joints() -> Iterator[tuple[Function, Function | None]]:
             [serialize_message(each) for each in itertools.islice(messages, 1000)])
 
         def publish() -> None:
-            message = topic.read(next(serialized), meanings, positions)
+            message = topic.read(next(serialized), meanings)
             assert message is not None
             meaning, values, stamp_ns = message
             positions.update(meaning.selection, values, stamp_ns, ignore_stamps=True)

@@ -24,7 +24,7 @@ import struct
 import threading
 import time
 import traceback
-from typing import NoReturn, TypeVar
+from typing import BinaryIO, NoReturn, TypeVar
 
 from sdf_pose_bridge.process_limits import Allowance, limited, LimitExceededError
 
@@ -136,10 +136,9 @@ class LimitedProcess:
         :raises LimitExceededError: as :meth:`call`.
         :raises ProcessEndedError: as :meth:`call`.
         """
-        begin, pid = time.monotonic(), 0
-
-        def received() -> tuple[bytes, int, float]:
-            while True:
+        begin, pid, event = time.monotonic(), 0, _BEGUN
+        try:
+            while event == _BEGUN:
                 longest_s = allowance.processor_s + WAITING_S
                 with contextlib.suppress(OSError):  # the process has ended
                     if pid:
@@ -158,17 +157,14 @@ class LimitedProcess:
                         msg = ('the process that starts the reading of files has ended; start '
                                'this program again')
                         raise ProcessEndedError(msg, may_pass=False)
-                    return _STATUS.unpack(message)
-
-        event, number, processor_s = received()
-        if event == _BEGUN:
-            pid = number
-            try:
-                event, number, processor_s = received()
-            except BaseException:
+                    event, number, processor_s = _STATUS.unpack(message)
+                    if event == _BEGUN:
+                        pid = number
+        except BaseException:
+            if pid:
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(pid, signal.SIGKILL)
-                raise
+            raise
         if event == _NOT_STARTED:
             msg = f'the process that reads files cannot be started: {os.strerror(number)}'
             raise ProcessEndedError(msg, may_pass=True)
@@ -183,7 +179,7 @@ class LimitedProcess:
 
 
 def _serve(calls: socket.socket, prepare: Callable[[], None]) -> NoReturn:
-    """Fork for each call that comes, until no more can come."""
+    """Fork for each call that comes, and report its end, until no more can come."""
     try:
         _end_with_parent()
         prepare()
@@ -194,37 +190,27 @@ def _serve(calls: socket.socket, prepare: Callable[[], None]) -> NoReturn:
         nowhere = os.open(os.devnull, os.O_WRONLY)
         for descriptor in (1, 2):
             os.dup2(nowhere, descriptor)
-        while True:
-            message, descriptors, _, _ = socket.recv_fds(calls, 1, 2)
-            if not message:
-                break
-            file, status = descriptors
-            _fork_for_call(file, socket.socket(fileno=status))
-            os.close(file)
+        while (received := socket.recv_fds(calls, 1, 2))[0]:
+            with (
+                open(received[1][0], 'r+b') as file,  # noqa: PTH123
+                socket.socket(fileno=received[1][1]) as status,
+                contextlib.suppress(BrokenPipeError),  # the caller waits no longer
+            ):
+                try:
+                    pid = os.fork()
+                except OSError as error:
+                    status.sendall(_STATUS.pack(_NOT_STARTED, error.errno or errno.EAGAIN, 0.0))
+                    continue
+                if pid == 0:
+                    _answer_call(file, status)
+                _, code, usage = os.wait4(pid, 0)
+                status.sendall(_STATUS.pack(
+                    _ENDED, os.waitstatus_to_exitcode(code), usage.ru_utime + usage.ru_stime))
     finally:
         os._exit(1)
 
 
-def _fork_for_call(file: int, status: socket.socket) -> None:
-    """
-    Answer a call in another process, and report its end.
-
-    :param file: a descriptor of the file with the call, which gets the answer.
-    """
-    with status, contextlib.suppress(BrokenPipeError):  # the caller waits no longer
-        try:
-            pid = os.fork()
-        except OSError as error:
-            status.sendall(_STATUS.pack(_NOT_STARTED, error.errno or errno.EAGAIN, 0.0))
-            return
-        if pid == 0:
-            _answer_call(file, status)
-        _, code, usage = os.wait4(pid, 0)
-        status.sendall(_STATUS.pack(
-            _ENDED, os.waitstatus_to_exitcode(code), usage.ru_utime + usage.ru_stime))
-
-
-def _answer_call(descriptor: int, status: socket.socket) -> NoReturn:
+def _answer_call(file: BinaryIO, status: socket.socket) -> NoReturn:
     """Read a call from a file, write the answer into it, report this, and end the process."""
     code = 1
     try:
@@ -233,12 +219,12 @@ def _answer_call(descriptor: int, status: socket.socket) -> NoReturn:
         with contextlib.suppress(OSError), open('/proc/self/oom_score_adj', 'w') as score:  # noqa: PTH123
             # When memory runs out, this process is ended, not the one that serves others.
             score.write('1000')
-        with open(descriptor, 'r+b') as file:
-            file.seek(0)
-            answer = _answer(*pickle.load(file))
-            file.seek(0)
-            file.truncate()
-            file.write(answer)
+        file.seek(0)
+        answer = _answer(*pickle.load(file))
+        file.seek(0)
+        file.truncate()
+        file.write(answer)
+        file.flush()
         # The end of the process takes a while, and the caller need not wait for it.
         code = 0
         status.sendall(_STATUS.pack(_ENDED, code, 0.0))

@@ -46,50 +46,39 @@ class _Limits:
     """The limits of this process, which grow."""
 
     def __init__(self, allowance: Allowance) -> None:
-        self._allowance = allowance
-        self._bytes_read = 0
         with open('/proc/self/statm', encoding='ascii') as file:  # noqa: PTH123 - fewer imports
-            self._memory_bytes = int(file.read().split()[0]) * resource.getpagesize()
-        self._processor_s = time.process_time()
-        self._before = {
-            kind: resource.getrlimit(kind) for kind in (resource.RLIMIT_CPU, resource.RLIMIT_AS)}
+            memory_bytes = int(file.read().split()[0]) * resource.getpagesize()
+        self._allowance = allowance
+        self._used = {
+            resource.RLIMIT_CPU: time.process_time(), resource.RLIMIT_AS: float(memory_bytes)}
+        self._before = {kind: resource.getrlimit(kind) for kind in self._used}
         # Freed at the end, as restoring the limits needs some memory, too.
         self._reserve = bytearray(_MEGABYTE)
-        self.are_of_the_user = False
-        """Whether the memory had a lower limit before."""
-
-    @property
-    def more_memory_bytes(self) -> float:
-        """The allowed memory beyond that of the process before."""
-        return (self._allowance.memory_bytes
-                + self._megabytes * self._allowance.memory_bytes_per_megabyte)
-
-    @property
-    def _megabytes(self) -> float:
-        return self._bytes_read / _MEGABYTE
+        self._bytes_read = 0
+        self.raise_for(0)
 
     def raise_for(self, byte_count: int) -> None:
         """Set the limits after so many bytes more were read."""
         self._bytes_read += byte_count
-        self._set(
-            resource.RLIMIT_CPU, self._processor_s + self._allowance.processor_s
-            + self._megabytes * self._allowance.seconds_per_megabyte)
-        self._set(resource.RLIMIT_AS, self._memory_bytes + self.more_memory_bytes)
-        self.are_of_the_user = (
-            self._before[resource.RLIMIT_AS] == resource.getrlimit(resource.RLIMIT_AS))
+        megabytes = self._bytes_read / _MEGABYTE
+        processor_s, memory_bytes, more_s, more_bytes = self._allowance
+        self.more_memory_bytes = memory_bytes + megabytes * more_bytes
+        more = {
+            resource.RLIMIT_CPU: processor_s + megabytes * more_s,
+            resource.RLIMIT_AS: self.more_memory_bytes}
+        for kind, (soft, hard) in self._before.items():
+            most = math.ceil(self._used[kind] + more[kind])
+            # A lower limit of the user stays.
+            is_of_the_user = soft != resource.RLIM_INFINITY and soft <= most
+            resource.setrlimit(kind, (soft if is_of_the_user else most, hard))
+            if kind == resource.RLIMIT_AS:
+                self.memory_is_of_the_user = is_of_the_user
 
     def end(self) -> None:
         """Restore the limits before, also if there is no memory."""
         self._reserve.clear()
         for kind, limits in self._before.items():
             resource.setrlimit(kind, limits)
-
-    def _set(self, kind: int, value: float) -> None:
-        soft, hard = self._before[kind]
-        most = math.ceil(value)
-        if soft != resource.RLIM_INFINITY:
-            most = min(most, soft)  # a lower limit of the user stays
-        resource.setrlimit(kind, (most, hard))
 
 
 _LIMITS: ContextVar[_Limits | None] = ContextVar('limits', default=None)
@@ -107,13 +96,12 @@ def limited(allowance: Allowance) -> Iterator[None]:
     """
     limits = _Limits(allowance)
     token = _LIMITS.set(limits)
-    limits.raise_for(0)
     try:
         yield
         return
     except MemoryError:
         limits.end()
-        if limits.are_of_the_user:
+        if limits.memory_is_of_the_user:
             raise
     finally:
         limits.end()

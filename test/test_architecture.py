@@ -15,9 +15,7 @@ MODULES = sorted(
 PAGES = [ROOT / 'CONTRIBUTING.md', *sorted((ROOT / 'docs').glob('*.md'))]
 
 TESTED_AS_A_WHOLE = {
-    'ros/joint_state_thread.py': ['ros/test_joint_states.py'],
     'ros/node.py': ['integration/test_bridge_reload.py', 'integration/test_bridge_changes.py'],
-    'ros/process.py': ['integration/test_bridge_process.py'],
 }
 """Modules that run only as a part of others, and the test modules that run these."""
 

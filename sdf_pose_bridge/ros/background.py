@@ -95,11 +95,6 @@ class CoroutineLock:
         self._node = node
         self._released: Future | None = None
 
-    @property
-    def is_held(self) -> bool:
-        """Whether a coroutine holds it."""
-        return self._released is not None
-
     async def __aenter__(self) -> None:
         while self._released is not None:
             await self._released

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import array
-from collections.abc import Container, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
@@ -103,13 +103,13 @@ def changed_settings(
 
 
 def warnings_about_unknown_parameters(
-    node: Node, known_elsewhere: Container[str] = (), *, only_misspelt: bool = False,
+    node: Node, known_elsewhere: Collection[str] = (),
 ) -> list[str]:
     """
     Find parameters that were given when the node was started, but that it does not have.
 
-    :param known_elsewhere: names of parameters of other nodes, which cause no warning.
-    :param only_misspelt: whether to leave out names that resemble no name of a parameter.
+    :param known_elsewhere: names of parameters of other nodes, which cause no warning. If there
+        are any, names that resemble no name of a parameter are left out, too.
     """
     hints = {
         name: hint_from_names(name, DECLARATIONS) for name in _given_parameters(node)
@@ -117,43 +117,27 @@ def warnings_about_unknown_parameters(
         and not name.startswith(QOS_OVERRIDES) and name not in known_elsewhere}
     return [
         f'there is no parameter "{name}", so it has no effect{hint}'
-        for name, hint in hints.items() if hint or not only_misspelt]
+        for name, hint in hints.items() if hint or not known_elsewhere]
 
 
 def _given_parameters(node: Node) -> Mapping[str, Parameter]:
-    """Return the parameters that were given when the node was started, by names."""
-    given: Mapping[str, Parameter] | None = getattr(node, '_parameter_overrides', None)
-    return _given_declared_parameters(node) if given is None else given
-
-
-def _given_declared_parameters(node: Node) -> Mapping[str, Parameter]:
-    """
-    Return values of the parameters that are declared here, by the public interface of rclpy.
-
-    It takes longer, and does not show parameters that are not declared here.
-    """
-    values = {}
-    for name, declaration in DECLARATIONS.items():
-        values[name] = node.declare_parameter(
-            name, declaration.default, ParameterDescriptor(dynamic_typing=True))
-        node.undeclare_parameter(name)
-    return values
+    # No public name shows those that are not declared. rclpy 7 to 10 have this one.
+    given: Mapping[str, Parameter] = node._parameter_overrides  # noqa: SLF001
+    return given
 
 
 def _parameters_at_start(
     given: Mapping[str, Parameter], defaults: Mapping[str, Value],
 ) -> list[Parameter]:
-    """Return all parameters with the values that they are given, or with their defaults."""
     parameters = []
     for name, declaration in DECLARATIONS.items():
-        type_, value = declaration.type_, defaults.get(name, declaration.default)
-        parameter = given.get(name)
-        if parameter is not None and parameter.type_ is not Parameter.Type.NOT_SET:
-            type_, value = parameter.type_, parameter.value
-        elif parameter is not None and type_ is Parameter.Type.STRING_ARRAY:
+        type_, default = declaration.type_, defaults.get(name, declaration.default)
+        parameter = given.get(name, Parameter(name, type_, default))
+        if parameter.type_ is Parameter.Type.NOT_SET:
             # rclpy treats an empty list on the command line as no value.
-            value = []
-        parameters.append(parameter_with_type(Parameter(name, type_, value), declaration.type_))
+            is_list = type_ is Parameter.Type.STRING_ARRAY
+            parameter = Parameter(name, type_, [] if is_list else default)
+        parameters.append(parameter_with_type(parameter, type_))
     return parameters
 
 
@@ -176,15 +160,22 @@ def _declare(node: Node, parameter: Parameter) -> None:
 
 def _converted(given: Parameter, *, shows_command_line: bool) -> Any:
     declaration = DECLARATIONS[given.name]
-    if given.type_ is not declaration.type_:
-        words = words_about_wrong_type(given, declaration.type_)
-        if shows_command_line:
-            words += hint_about_command_line(given, declaration.type_)
-        raise ValueError(words)
-    return declaration.convert(given.value)
-
-
-# Types
+    if given.type_ is declaration.type_:
+        return declaration.convert(given.value)
+    if given.type_ is Parameter.Type.NOT_SET:
+        msg = 'cannot be without a value'
+        raise ValueError(msg)
+    value = list(given.value) if isinstance(given.value, array.array) else given.value
+    shown = printable(shortened(str(value)))
+    msg = (f'is {shown}, which is {_NAMES_OF_TYPES[given.type_]}; it must be '
+           f'{_NAMES_OF_TYPES[declaration.type_]}')
+    if shows_command_line and declaration.type_ is Parameter.Type.STRING:
+        msg += f', so quote it twice: -p "{given.name}:=\'{shown}\'"'
+    elif (shows_command_line and declaration.type_ is Parameter.Type.STRING_ARRAY
+            and given.type_ is Parameter.Type.STRING):
+        items = ', '.join(f"'{item.strip()}'" for item in given.value.split(','))
+        msg += f': -p "{given.name}:=[{items}]"'
+    raise ValueError(msg)
 
 
 def parameter_with_type(given: Parameter, wanted: Parameter.Type) -> Parameter:
@@ -200,34 +191,3 @@ def parameter_with_type(given: Parameter, wanted: Parameter.Type) -> Parameter:
             and not len(given.value)):
         return Parameter(given.name, wanted, [])
     return given
-
-
-def words_about_wrong_type(given: Parameter, wanted: Parameter.Type) -> str:
-    """
-    Return a message about a value of the wrong type.
-
-    :return: the words that follow "parameter <name>" in a sentence.
-    """
-    if given.type_ is Parameter.Type.NOT_SET:
-        return 'cannot be without a value'
-    return (f'is {_shown_value(given)}, which is {_NAMES_OF_TYPES[given.type_]}; it must be '
-            f'{_NAMES_OF_TYPES[wanted]}')
-
-
-def hint_about_command_line(given: Parameter, wanted: Parameter.Type) -> str:
-    """
-    Return a hint for writing a value of the wrong type on the command line.
-
-    :return: the end of a sentence; empty if there is nothing to show.
-    """
-    if wanted is Parameter.Type.STRING:
-        return f', so quote it twice: -p "{given.name}:=\'{_shown_value(given)}\'"'
-    if given.type_ is Parameter.Type.STRING and wanted is Parameter.Type.STRING_ARRAY:
-        items = ', '.join(f"'{item.strip()}'" for item in given.value.split(','))
-        return f': -p "{given.name}:=[{items}]"'
-    return ''
-
-
-def _shown_value(given: Parameter) -> str:
-    value = list(given.value) if isinstance(given.value, array.array) else given.value
-    return printable(shortened(str(value)))

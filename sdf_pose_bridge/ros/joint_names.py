@@ -38,6 +38,7 @@ class Meanings:
     """
 
     def __init__(self, frames: PublishedMovingFrames) -> None:
+        self.positions = frames.positions
         self._frames = frames
         # By the model and the names, and the last one of each topic.
         self._meanings: dict[tuple[str, tuple[str, ...]], Meaning] = {}
@@ -61,10 +62,9 @@ class Meanings:
         unknown = []
         found = self._meanings.get((model, names.names))
         if found is None:
-            positions = self._frames.positions
             found = Meaning(
-                names, positions.selection(names.names, model), np.array([], np.intp))
-            unknown = positions.unknown(names.names, model)
+                names, self.positions.selection(names.names, model), np.array([], np.intp))
+            unknown = self.positions.unknown(names.names, model)
             self._make_room(len(names.data))
             self._meanings[model, names.names] = found
         self._last[topic] = found
@@ -72,7 +72,7 @@ class Meanings:
 
     def rows(self, meaning: Meaning) -> NDArray[np.intp]:
         """Return the transforms that the names move, and those of joints at zero."""
-        positions = self._frames.positions
+        positions = self.positions
         if meaning.unreported_count != positions.unreported_count and len(meaning.selection.dofs):
             meaning.unreported_count = positions.unreported_count
             is_changed = positions.is_known & ~positions.is_reported

@@ -4,8 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-import contextlib
+from collections.abc import Callable, Sequence
 import time
 from typing import NamedTuple
 
@@ -16,14 +15,12 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 
-from sdf_pose_bridge.ros.background import run_in_thread
-from sdf_pose_bridge.ros.cdr import joint_state_from_bytes
+from sdf_pose_bridge.ros.cdr import joint_state_from_bytes, NANOSECONDS
 from sdf_pose_bridge.ros.joint_names import Meaning, Meanings
 from sdf_pose_bridge.ros.log_lines import names_in_line
-from sdf_pose_bridge.ros.publishers import NANOSECONDS
 from sdf_pose_bridge.ros.qos_overrides import SUBSCRIPTION_OVERRIDES
 from sdf_pose_bridge.ros.wait_set import NoExecutor, take_message
-from sdf_pose_bridge.tf.joint_positions import JointPositions, LARGEST_POSITION
+from sdf_pose_bridge.tf.joint_positions import LARGEST_POSITION
 
 MOST_WAITING = 100
 """Largest number of messages that wait in a subscription; then new ones replace the oldest."""
@@ -53,7 +50,7 @@ class JointStateTopic:
         self.model = model
         self.last_period = 0
         """Number of the period in which the last message was taken; the caller counts them."""
-        self._node = node
+        self._logger = node.get_logger()
         self._warnings_due: dict[str, float] = {}
         # A best effort and volatile subscription is compatible with every publisher, so there is
         # nothing to report unless parameters change that.
@@ -70,7 +67,7 @@ class JointStateTopic:
         """Take a message; return None if there is none."""
         return take_message(self.subscription)
 
-    def read(self, data: bytes, meanings: Meanings, positions: JointPositions) -> Message | None:
+    def read(self, data: bytes, meanings: Meanings) -> Message | None:
         """Read a serialized message; return None with a warning if it cannot be used."""
         last = meanings.last(self.name)
         try:
@@ -87,39 +84,28 @@ class JointStateTopic:
                     f'and nanosec must be less than {NANOSECONDS}')
                 raise ValueError(msg)
         except ValueError as error:
-            if self._may_warn('message'):
-                self._node.get_logger().warning(f'a message on {self.name} is ignored: {error}')
+            reason = str(error)
+            self._warn('message', lambda: f'a message on {self.name} is ignored: {reason}')
             return None
         if last is None or names is not last.names:
             last, unknown = meanings.find(names, self.name, self.model)
-            self._warn_about_unknown(unknown, positions)
+            if unknown:
+                where = f' in model "{self.model}"' if self.model else ''
+                self._warn('names', lambda: (
+                    f'{self.name} has {names_in_line(unknown)}, not the name of one moving joint'
+                    f'{where}{meanings.positions.hint(unknown[0], self.model)}'))
         return Message(last, values, sec * NANOSECONDS + nanosec)
 
     def warn_about_invalid(self, names: Sequence[str]) -> None:
         """Log the joints whose positions cannot be used, if there are any."""
-        if names and self._may_warn('positions'):
-            self._node.get_logger().warning(
-                f'{self.name} has positions for {names_in_line(names)} that '
-                f'are not finite or beyond {LARGEST_POSITION:g}; the last ones are kept')
+        if names:
+            self._warn('positions', lambda: (
+                f'{self.name} has positions for {names_in_line(names)} that are not finite or '
+                f'beyond {LARGEST_POSITION:g}; the last ones are kept'))
 
-    def _warn_about_unknown(self, names: Sequence[str], positions: JointPositions) -> None:
-        if not names or not self._may_warn('names'):
-            return
-        where = f' in model "{self.model}"' if self.model else ''
-
-        def warn() -> None:
-            self._node.get_logger().warning(
-                f'{self.name} has {names_in_line(names)}, not the name of one '
-                f'moving joint{where}{positions.hint(names[0], self.model)}')
-
-        # Finding the nearest name takes long if there are many.
-        with contextlib.suppress(MemoryError):
-            run_in_thread(self._node, warn)
-
-    def _may_warn(self, about: str) -> bool:
-        """Return whether the last warning about something was long ago."""
+    def _warn(self, about: str, text: Callable[[], str]) -> None:
+        """Log a warning, unless the last one about the same was not long ago."""
         now = time.monotonic()
-        if now < self._warnings_due.get(about, 0.0):
-            return False
-        self._warnings_due[about] = now + _WARNING_PERIOD_S
-        return True
+        if now >= self._warnings_due.get(about, 0.0):
+            self._warnings_due[about] = now + _WARNING_PERIOD_S
+            self._logger.warning(text())

@@ -1,66 +1,174 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Subscribe to topics of joint states, for a thread that follows them."""
+"""
+Follow topics of joint states in a thread, and publish what their messages move.
+
+The transforms that a message changes are published on ``/tf`` with the stamp of the message, if it
+is newer than their last one. Frames of joints that no message has named are not published. If such
+joints are at zero, all frames are published before the first message, and then these frames with
+each message, so that TF is complete.
+
+With a highest rate, a message is published at once and begins a period, which is the same for all
+topics. Later ones wait in the subscriptions for its end. Then the newest of them are published in
+one message, and another period begins if there are any. Only the first message of a topic after a
+silence does not wait, unless all topics were silent: then many robots may start together.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections import deque
+from collections.abc import Callable, Sequence
+import contextlib
+import math
+import threading
+import time
+import traceback
+from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+from rclpy.exceptions import InvalidHandle
 from rclpy.node import Node
+from rclpy.task import Future
 
-from sdf_pose_bridge.ros.joint_state_thread import JointStateThread, Rule, Target
-from sdf_pose_bridge.ros.joint_state_topic import JointStateTopic
+from sdf_pose_bridge.ros.background import wake
+from sdf_pose_bridge.ros.cdr import NANOSECONDS
+from sdf_pose_bridge.ros.joint_names import Meaning, Meanings
+from sdf_pose_bridge.ros.joint_state_topic import JointStateTopic, Message
+from sdf_pose_bridge.ros.log_lines import line_about_unreported_joints, MissingJoints
+from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
 from sdf_pose_bridge.ros.topic_names import JointStateTopics
+from sdf_pose_bridge.ros.wait_set import WaitSet
 
 SUBSCRIPTIONS_AT_ONCE = 40
 """Number of subscriptions, made in some 20 milliseconds, before other callbacks run."""
+
+INITIAL_PERIOD_S = 0.1
+"""Period of ``/tf`` before the first message, if joints are at zero then."""
+
+GRACE_S = 2.0
+"""Seconds until joints that no message has named are reported."""
+
+TOPICS_PERIOD_S = 1.0 / 30.0
+"""Shortest period of the topics of moving frames, and longest time to take messages at once."""
+
+SILENCE_S = 1.0
+"""Seconds without a message, and two periods at least, after which a topic is silent. With fewer,
+each message of many slow robots would be published by itself."""
+
+_REST_S = 0.5
+_LONGEST_SLEEP_S, _CLOCK_PERIOD_S = 0.1, 0.01
+"""Longest waits in a period: before too many messages wait, and for a simulated clock."""
+
+
+class _Target(NamedTuple):
+    """The frames, topics and settings that the thread follows."""
+
+    frames: PublishedMovingFrames
+    topics: Sequence[JointStateTopic]
+    settings: Settings
+
+    @property
+    def period_ns(self) -> float:
+        """The period of each transform on ``/tf`` in nanoseconds; 0.0 for each message."""
+        frequency = self.settings.publish_frequency
+        return NANOSECONDS / frequency if frequency and not self.settings.ignore_timestamp else 0.0
 
 
 class JointStates:
     """
     Follows topics of joint states, and publishes the frames that their messages move.
 
-    :param node: the node, with an executor, which calls all methods.
+    A thread does this from its construction to :meth:`end`; the executor of the node calls all
+    public methods.
     """
 
     def __init__(
-        self, node: Node, frames: PublishedMovingFrames, topics: JointStateTopics, rule: Rule,
+        self, node: Node, frames: PublishedMovingFrames, topics: JointStateTopics,
+        settings: Settings,
     ) -> None:
         self._node = node
+        self._logger = node.get_logger()
         # By their names before they are remapped, with their models.
         self._topics: dict[tuple[str, str], JointStateTopic] = {}
         self._missing_topics: list[tuple[str, str]] = []
         self._warnings: tuple[str, ...] = ()
-        self._target = Target(frames, (), 0, rule)
-        self.thread = JointStateThread(node, self._target)
-        self.follow(frames, topics, rule)
+        self._wait_set = WaitSet(node.context)
+        self._target = self._next_target = _Target(frames, (), settings)
+        self._callers: deque[Future] = deque()
+        self._has_to_publish_topics = False
+        self._has_to_end = False
+        # The thread alone changes everything else. First, what is due at some monotonic time.
+        self._due: dict[Callable[[], None], float] = {}
+        self._topics_due = 0.0
+        self._now_ns = 0
+        self._has_jumped = False
+        self._has_moved = False
+        self._has_reported_missing = False
+        self._period = 0
+        self._start_frames()
+        self._end_periods()
+        self.follow(frames, topics, settings)
+        self._thread = threading.Thread(target=self._run, name='joint states', daemon=True)
+        self._thread.start()
+        node.context.on_shutdown(self.end)
+
+    # Calls of the executor
 
     def follow(
-        self, frames: PublishedMovingFrames, topics: JointStateTopics, rule: Rule,
+        self, frames: PublishedMovingFrames, topics: JointStateTopics, settings: Settings,
     ) -> None:
         """Change what is followed; joints with the same names keep their positions."""
-        logger = self._node.get_logger()
         if topics.warnings != self._warnings:
             self._warnings = topics.warnings
             for line in topics.warnings:
-                logger.warning(line)
+                self._logger.warning(line)
+        before = self._next_target.frames.positions
+        if frames.positions is not before:
+            # Look-ups do not wait until the thread does it again.
+            frames.positions.take_over(before)
         wanted = topics.models.items()
         unwanted = [self._topics.pop(key) for key in self._topics.keys() - wanted]
         self._missing_topics = [key for key in wanted if key not in self._topics]
-        self._target = Target(frames, (), len(wanted), rule)
+        self._topic_count = len(wanted)
+        self._next_target = _Target(frames, tuple(self._topics.values()), settings)
         self._open_missing_topics()
-        self._destroy(unwanted)
+        for topic in unwanted:
+            self._node.destroy_subscription(topic.subscription)
+
+    def publish_topics(self) -> None:
+        """Publish all moving frames on ``~/transforms`` and ``~/poses/...`` soon."""
+        self._has_to_publish_topics = True
+        self._wake()
+
+    def catch_up(self) -> Future:
+        """Return a future that is done when all calls and messages so far are processed."""
+        future = Future()
+        self._callers.append(future)
+        self._wake()
+        return future
 
     def end(self) -> None:
-        """Stop following, and destroy the subscriptions."""
+        """End the thread, and destroy the subscriptions."""
         self._missing_topics.clear()
-        self.thread.end()
-        self._destroy(self._topics.values())
-
-    def _destroy(self, topics: Iterable[JointStateTopic]) -> None:
-        for topic in topics:
+        self._has_to_end = True
+        self._wake()
+        self._thread.join()
+        for topic in self._topics.values():
             self._node.destroy_subscription(topic.subscription)
+
+    @property
+    def unreported(self) -> MissingJoints:
+        """The joints that no message has named in time."""
+        target = self._next_target
+        positions = target.frames.positions
+        found = None if self._end_grace in self._due else positions.unreported()
+        if found is None:
+            return MissingJoints()
+        name = positions.names[found.first]
+        return MissingJoints(found.joint_count, name, [
+            topic.name for topic in target.topics if not positions.unknown([name], topic.model)])
 
     def _open_missing_topics(self) -> None:
         """Make some subscriptions now, and leave the others to a task."""
@@ -72,8 +180,221 @@ class JointStates:
             except (RuntimeError, ValueError) as error:
                 # Security may forbid it. The rest of the message names lines of the source of ROS.
                 reason = str(error).partition(', at /')[0]
-                self._node.get_logger().warning(f'no subscription to {key[0]}: {reason}')
-        self._target = self._target._replace(topics=tuple(self._topics.values()))
-        self.thread.follow(self._target)
+                self._logger.warning(f'no subscription to {key[0]}: {reason}')
+        self._next_target = self._next_target._replace(topics=tuple(self._topics.values()))
+        self._wake()
         if self._missing_topics:
             self._node.executor.create_task(self._open_missing_topics)
+
+    def _wake(self) -> None:
+        # The thread may have ended with the node.
+        with contextlib.suppress(InvalidHandle):
+            self._wait_set.wake()
+
+    # The thread
+
+    def _run(self) -> None:
+        while not self._has_to_end:
+            try:
+                self._turn()
+            except InvalidHandle:
+                # A topic has been destroyed, which follows a change of the target; or the node.
+                if self._target is self._next_target:
+                    break
+                self._follow_next_target()
+            except Exception as error:  # noqa: BLE001 - includes defects
+                self._logger.error(
+                    f'internal error in joint states: {error}\n{traceback.format_exc()}',
+                    throttle_duration_sec=60.0)
+        self._wait_set.close()
+        self._answer(len(self._callers))
+
+    def _turn(self) -> None:
+        """Wait once, and do what is due."""
+        with self._node.handle:
+            pass  # the wait set would not notice that the node was destroyed
+        caller_count = len(self._callers)
+        ready = self._wait_set.wait(
+            [each.subscription for each in self._awaited],
+            0.0 if caller_count else self._longest_wait())
+        if self._target is not self._next_target:
+            self._follow_next_target()
+            return  # the messages are ready again
+        self._follow_clock()
+        has_ended = self._is_in_period and (
+            self._has_jumped or self._now_ns >= self._period_ends_ns)
+        if ready and not has_ended:
+            self._take([self._awaited[index] for index in ready], at_once=True)
+        if self._is_in_period and (has_ended or caller_count or not ready):
+            self._take(self._target.topics, at_once=False)
+        if has_ended:
+            self._end_period()
+        self._answer(caller_count)
+        now = time.monotonic()
+        if self._has_to_publish_topics:
+            self._has_to_publish_topics = False
+            self._due[self._publish_at_rest] = now
+        for function in [each for each, due in self._due.items() if due <= now]:
+            del self._due[function]
+            function()
+
+    def _longest_wait(self) -> float:
+        seconds = min(self._due.values(), default=math.inf) - time.monotonic()
+        if self._is_in_period:
+            is_simulated = self._node.get_clock().ros_time_is_active
+            seconds = min(
+                seconds, _LONGEST_SLEEP_S, _CLOCK_PERIOD_S if is_simulated
+                else (self._period_ends_ns - time.time_ns()) / NANOSECONDS)
+        return max(seconds, 0.0)
+
+    def _answer(self, count: int) -> None:
+        for _ in range(count):
+            self._callers.popleft().set_result(None)
+        if count:
+            wake(self._node.executor)
+
+    def _follow_next_target(self) -> None:
+        before, self._target = self._target, self._next_target
+        if self._target.frames is not before.frames:
+            self._target.frames.positions.take_over(before.frames.positions)
+            self._start_frames()
+        self._end_periods()
+
+    def _start_frames(self) -> None:
+        self._meanings = Meanings(self._target.frames)
+        now = time.monotonic()
+        self._due[self._publish_all] = self._due[self._publish_at_rest] = now
+        if not self._has_reported_missing:
+            self._due[self._end_grace] = now + GRACE_S
+
+    # Periods
+
+    @property
+    def _is_in_period(self) -> bool:
+        return self._period_ends_ns < math.inf
+
+    def _begin_period(self, awaited: Sequence[JointStateTopic]) -> None:
+        """Begin a period, for whose end the messages of all but some topics wait."""
+        self._period_ends_ns = self._now_ns + self._target.period_ns
+        self._period += 1
+        self._awaited = awaited
+
+    def _end_period(self) -> None:
+        """Publish what has waited; without any, publish the next message at once."""
+        rows = np.flatnonzero(self._target.frames.is_waiting)
+        if len(rows):
+            self._target.frames.publish_tf(rows)
+            self._publish_topics_soon()
+            longest = max(2.0, SILENCE_S * NANOSECONDS / self._target.period_ns)
+            self._begin_period([
+                each for each in self._target.topics if self._period - each.last_period > longest])
+        else:
+            self._end_periods()
+
+    def _end_periods(self) -> None:
+        self._period_ends_ns = math.inf
+        self._awaited = self._target.topics
+
+    # Messages
+
+    def _take(self, topics: Sequence[JointStateTopic], *, at_once: bool) -> None:
+        """
+        Take messages of topics, and set their positions.
+
+        :param at_once: whether to publish what they move, and to leave the others as soon as a
+            period has begun. Otherwise it waits, and of those with the same names the newest
+            counts.
+        """
+        newest: dict[Meaning, tuple[JointStateTopic, Message]] = {}
+        # Messages may come faster than they are taken. Topics take turns, so that one with too
+        # many messages does not delay the others.
+        ends_at = time.monotonic() + TOPICS_PERIOD_S
+        while topics:
+            taken = [(topic, data) for topic in topics if (data := topic.take()) is not None]
+            for topic, data in taken:
+                message = topic.read(data, self._meanings)
+                if message is not None:
+                    _, known = newest.get(message.meaning, (topic, message))
+                    if not 0 < message.stamp_ns < known.stamp_ns:
+                        newest[message.meaning] = topic, message
+            topics = [topic for topic, _ in taken] if time.monotonic() < ends_at else []
+            if newest and (at_once or not topics):
+                moved = [self._move(topic, message) for topic, message in newest.values()]
+                rows = moved[0] if len(moved) == 1 else np.unique(np.concatenate(moved))
+                if not at_once:
+                    self._target.frames.is_waiting[rows] = True
+                elif len(rows):
+                    self._publish_at_once(rows)
+                newest.clear()
+            if at_once and self._is_in_period:
+                break
+
+    def _follow_clock(self) -> None:
+        """Accept any stamp after time has jumped back, for example when a bag starts again."""
+        clock = self._node.get_clock()
+        now_ns = clock.now().nanoseconds if clock.ros_time_is_active else time.time_ns()
+        self._has_jumped = now_ns < self._now_ns
+        self._now_ns = now_ns
+        if self._has_jumped:
+            self._logger.info('time has jumped back', throttle_duration_sec=10.0)
+            self._target.frames.forget_stamps()
+
+    def _move(self, topic: JointStateTopic, message: Message) -> NDArray[np.intp]:
+        """Set the positions of a message; return the moving transforms to publish."""
+        target, meaning = self._target, message.meaning
+        positions, ignores_stamps = target.frames.positions, target.settings.ignore_timestamp
+        stamp_ns = message.stamp_ns or self._node.get_clock().now().nanoseconds
+        if self._has_jumped and stamp_ns > self._now_ns:
+            return np.array([], np.intp)  # it was sent before that
+        topic.last_period = self._period
+        topic.warn_about_invalid(positions.update(
+            meaning.selection, message.positions, stamp_ns, ignore_stamps=ignores_stamps))
+        if self._has_reported_missing and positions.unreported() is None:
+            self._has_reported_missing = False
+            self._logger.info('all joints have been reported now')
+        rows = self._meanings.rows(meaning)
+        if len(rows) and not self._has_moved:
+            self._has_moved = True
+            self._logger.info(
+                f'following {topic.name}' if self._topic_count == 1 else
+                f'following {self._topic_count} topics of joint states; the first message is on '
+                f'{topic.name}')
+        return target.frames.stamp(rows, stamp_ns, ignore_stamps=ignores_stamps)
+
+    # Publication
+
+    def _publish_at_once(self, rows: NDArray[np.intp]) -> None:
+        """Publish moving transforms; with a highest rate, a period begins if there is none."""
+        self._target.frames.publish_tf(rows)
+        self._publish_topics_soon()
+        if self._is_in_period:
+            self._awaited = [each for each in self._awaited if each.last_period < self._period]
+        # Simulated time that has not begun would never end a period.
+        elif self._target.period_ns and self._now_ns:
+            self._begin_period([])
+
+    def _publish_all(self) -> None:
+        """Publish all frames on ``/tf``; repeatedly as long as no message has come."""
+        if self._target.frames.publish_all():
+            self._due[self._publish_all] = time.monotonic() + INITIAL_PERIOD_S
+
+    def _publish_topics_soon(self) -> None:
+        now = time.monotonic()
+        self._due[self._publish_to_listeners] = max(self._topics_due, now)
+        self._due[self._publish_at_rest] = now + _REST_S
+
+    def _publish_to_listeners(self) -> None:
+        # A late one does not delay those that follow.
+        self._topics_due = max(self._topics_due + TOPICS_PERIOD_S, time.monotonic())
+        self._target.frames.publish_topics(only_listeners=True)
+
+    def _publish_at_rest(self) -> None:
+        # Later listeners get the last positions.
+        self._target.frames.publish_topics(only_listeners=False)
+
+    def _end_grace(self) -> None:
+        """Report the joints that no message has named, once."""
+        unreported = self.unreported
+        if unreported.number:
+            self._has_reported_missing = True
+            self._logger.info(line_about_unreported_joints(unreported))

@@ -9,7 +9,7 @@ package explain.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, MutableMapping
+from collections.abc import MutableMapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -50,32 +50,26 @@ def use_profile(environment: MutableMapping[str, str]) -> str:
         first node is created.
     :return: one sentence for the log: the profile that is used, or why it is not.
     """
-    reason = _reason_against_profile(environment)
-    if reason:
-        return f'the Fast DDS profile of this package is not used: {reason}'
-    try:
-        share = get_package_share_directory('sdf_pose_bridge')
-    except (LookupError, OSError):
-        return 'the Fast DDS profile of this package is not used: the package is not installed'
-    profile = PROFILES[environment['ROS_DISTRO']]
-    environment[profile.variable] = str(Path(share, profile.file))
-    (other_variable,) = set(VARIABLES) - {profile.variable}
-    return (f'the Fast DDS profile {environment[profile.variable]} is used; set '
-            f'{profile.variable} to use your own, or {other_variable} to an empty string to use '
-            'none')
-
-
-def _reason_against_profile(environment: Mapping[str, str]) -> str:
     middleware = environment.get('RMW_IMPLEMENTATION', '')
-    if middleware not in _FAST_DDS:
-        return f'the middleware is {middleware}'
-    for variable in VARIABLES:
-        if variable in environment:
-            return f'{variable} is set'
+    chosen = [variable for variable in VARIABLES if variable in environment]
     distro = environment.get('ROS_DISTRO', '')
-    if distro not in PROFILES:
-        return f'there is none for ROS_DISTRO "{distro}"'
-    local_file = PROFILES[distro].local_file
-    if Path(local_file).exists():
-        return f'{local_file} is in the working directory'
-    return ''
+    profile = PROFILES.get(distro)
+    if middleware not in _FAST_DDS:
+        reason = f'the middleware is {middleware}'
+    elif chosen:
+        reason = f'{chosen[0]} is set'
+    elif profile is None:
+        reason = f'there is none for ROS_DISTRO "{distro}"'
+    elif Path(profile.local_file).exists():
+        reason = f'{profile.local_file} is in the working directory'
+    else:
+        try:
+            path = str(Path(get_package_share_directory('sdf_pose_bridge'), profile.file))
+        except (LookupError, OSError):
+            reason = 'the package is not installed'
+        else:
+            environment[profile.variable] = path
+            (other_variable,) = set(VARIABLES) - {profile.variable}
+            return (f'the Fast DDS profile {path} is used; set {profile.variable} to use your '
+                    f'own, or {other_variable} to an empty string to use none')
+    return f'the Fast DDS profile of this package is not used: {reason}'

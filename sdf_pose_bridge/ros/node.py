@@ -21,6 +21,7 @@ from std_srvs.srv import Trigger
 from sdf_pose_bridge.errors import AddressError, SdfError
 from sdf_pose_bridge.problems import folded
 from sdf_pose_bridge.ros.background import CoroutineLock, PollingThread, run_in_thread
+from sdf_pose_bridge.ros.cdr import NANOSECONDS
 from sdf_pose_bridge.ros.diagnostics import Diagnostics, PERIOD_S
 from sdf_pose_bridge.ros.file_follower import FileFollower
 from sdf_pose_bridge.ros.given_parameters import changed_settings
@@ -36,7 +37,7 @@ from sdf_pose_bridge.ros.log_lines import (
 from sdf_pose_bridge.ros.parameter_services import add_setting_services
 from sdf_pose_bridge.ros.parameters import Settings, SettingsError
 from sdf_pose_bridge.ros.published_frames import frames_from_scene, PublishedFrames
-from sdf_pose_bridge.ros.publishers import NANOSECONDS, TextPublisher
+from sdf_pose_bridge.ros.publishers import TextPublisher
 from sdf_pose_bridge.ros.scene_reader import SceneReader
 from sdf_pose_bridge.ros.services import add_services, SERVICE_QOS, set_pose
 from sdf_pose_bridge.ros.topic_names import (
@@ -128,12 +129,11 @@ class SdfPoseBridge:
                 frames.publish_tf_static()
             await frames.publish_topics()
             if self._joint_states is not None:
-                self._joint_states.thread.publish_topics()
+                self._joint_states.publish_topics()
         if loaded is not before:
-            lines = await run_in_thread(
-                self._node, lambda: lines_about_lost_frames(before.tree, loaded.tree))
             await run_in_thread(self._node, lambda: self._follower.follow(loaded))
-            for line in lines:
+            for line in await run_in_thread(
+                    self._node, lambda: lines_about_lost_frames(before.tree, loaded.tree)):
                 self._logger.warning(line)
             self._report_success()
             self._publish_robot_description()
@@ -151,27 +151,24 @@ class SdfPoseBridge:
             settings.joint_states_topics, self._loaded.tree.world, moving.positions.models,
             self._node.resolve_topic_name)
         # Imported here because it takes 8 ms, and joints do not move by default.
-        from sdf_pose_bridge.ros.joint_state_thread import Rule
         from sdf_pose_bridge.ros.joint_states import JointStates
-        rule = Rule(settings.publish_frequency, settings.ignore_timestamp)
         if current is not None:
-            current.follow(moving, topics, rule)
+            current.follow(moving, topics, settings)
         else:
-            self._joint_states = JointStates(self._node, moving, topics, rule)
+            self._joint_states = JointStates(self._node, moving, topics, settings)
 
     async def _current_lookup(self) -> PoseLookup:
-        """Return the current look-up of poses, with the positions of all messages so far."""
         await self._process_messages()
         return self._loaded.lookup
 
     async def _process_messages(self) -> None:
         """Wait until the messages of joint states so far are processed."""
         if self._joint_states is not None:
-            await self._joint_states.thread.catch_up()
+            await self._joint_states.catch_up()
 
     def _unreported_joints(self) -> MissingJoints:
         return MissingJoints() if self._joint_states is None else (
-            self._joint_states.thread.unreported)
+            self._joint_states.unreported)
 
     def _follow_switches(self) -> None:
         self._diagnostics.switch(on=self._settings.publish_diagnostics)
@@ -217,7 +214,6 @@ class SdfPoseBridge:
         return [f'internal error, see the log of the node: {error!r}']
 
     def _report_failure(self, lines: list[str]) -> None:
-        """Report errors, unless there are none."""
         if lines:
             source = self._settings.load_request.source
             self._logger.error(f'{source} is rejected; the frames published before stay')
@@ -251,7 +247,6 @@ class SdfPoseBridge:
         return answer
 
     async def _check_files(self) -> None:
-        """Read the files again if they have changed."""
         with contextlib.suppress(MemoryError):  # they are checked again after a period
             failure = None
             if await run_in_thread(self._node, self._follower.has_to_read):
@@ -300,10 +295,8 @@ class SdfPoseBridge:
             self._again_timer.reset()
 
     async def _publish_again(self) -> None:
-        if self._publishing.is_held:
-            return
-        begin = time.perf_counter()
         async with self._publishing:
+            begin = time.perf_counter()
             await self._frames.publish_fixed_again()
         seconds = time.perf_counter() - begin
         if seconds * self._settings.publish_rate > 1.0:

@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Run the node in a process, from its start to its end by a signal.
+Run one of the executables, which are one node with two names and two tables of defaults.
 
 Signals are handled here because rclpy's handlers shut ROS down while it is in use, which then
 fails in many ways, and do not interrupt the reading of a file.
@@ -9,7 +9,7 @@ fails in many ways, and do not interrupt the reading of a file.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 import contextlib
 from contextlib import contextmanager
 import gc
@@ -18,6 +18,7 @@ import signal
 import sys
 import threading
 import traceback
+from typing import NamedTuple
 
 import rclpy
 from rclpy.exceptions import InvalidParameterTypeException
@@ -35,11 +36,11 @@ from sdf_pose_bridge.ros.given_parameters import (
 from sdf_pose_bridge.ros.log_lines import lines_from_error, lines_from_warnings
 from sdf_pose_bridge.ros.middleware import use_profile
 from sdf_pose_bridge.ros.parameter_services import restrict_parameter_services
-from sdf_pose_bridge.ros.parameters import SettingsError
-from sdf_pose_bridge.ros.programs import Program, PROGRAMS, ROBOT_STATE_PUBLISHER
+from sdf_pose_bridge.ros.parameters import SettingsError, Value
 from sdf_pose_bridge.ros.published_frames import PublishedFrames, TF_STATIC
 from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.ros.scene_reader import SceneReader
+from sdf_pose_bridge.ros.setting_rules import AUTO_KINDS
 from sdf_pose_bridge.ros.topic_names import check_number_of_topics
 import sdf_pose_bridge_interfaces  # noqa: F401 - if it is missing, say so before anything else
 
@@ -47,6 +48,52 @@ STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 LONGEST_STOP_S = 10.0
 """Time in s for the current work to end after a signal, before the process is ended."""
+
+
+class Program(NamedTuple):
+    """An executable."""
+
+    node_name: str
+    defaults: Mapping[str, Value]
+    """The defaults of parameters that differ from the declared defaults."""
+    usage: str
+    takes_file: bool = False
+    """Whether the command line may name a file, before the arguments of ROS."""
+    known_elsewhere: Collection[str] = ()
+    """Names of parameters of older releases, which cause no warning. If there are any, files of
+    parameters may be for other nodes too."""
+
+
+BRIDGE = Program(
+    'sdf_pose_bridge', {}, """\
+Publish every frame of an SDFormat file on TF and on topics.
+
+usage: ros2 run sdf_pose_bridge bridge --ros-args -p sdf_file:=cell.sdf [-p name:=value ...]
+
+"ros2 param describe /sdf_pose_bridge <name>" explains each parameter of the running node.""")
+
+ROBOT_STATE_PUBLISHER = Program(
+    'robot_state_publisher',
+    {
+        'use_joint_states': True,
+        'joint_states_topics': ['joint_states'],
+        'publish_frequency': 20.0,
+        'kinds': [AUTO_KINDS],
+        'pose_topics': [],
+        'publish_transforms': False,
+        'publish_visuals': False,
+        'publish_diagnostics': False,
+    }, """\
+Publish the frames of a robot in URDF or SDFormat, as the package robot_state_publisher does.
+
+usage: ros2 run sdf_pose_bridge robot_state_publisher [robot.urdf] [--ros-args -p name:=value ...]
+
+The text is the parameter robot_description. Without it, the file is robot.urdf or the parameter
+sdf_file. "ros2 param describe /robot_state_publisher <name>" explains each parameter of
+the running node.""", takes_file=True, known_elsewhere=('use_tf_static',))
+
+PROGRAMS = {'bridge': BRIDGE, 'robot_state_publisher': ROBOT_STATE_PUBLISHER}
+"""The executables by their names."""
 
 
 def run(args: Sequence[str], program_name: str, reader: SceneReader) -> int:
@@ -96,8 +143,7 @@ def run(args: Sequence[str], program_name: str, reader: SceneReader) -> int:
 def _exit_code_from_node(
     node: Node, program: Program, reader: SceneReader, file: str = '',
 ) -> int:
-    _log_warnings(node, warnings_about_unknown_parameters(
-        node, program.known_elsewhere, only_misspelt=bool(program.known_elsewhere)))
+    _log_warnings(node, warnings_about_unknown_parameters(node, program.known_elsewhere))
     try:
         settings = settings_from_node(node, program.defaults, file)
         publishers = Publishers(node)

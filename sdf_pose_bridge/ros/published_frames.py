@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 import contextlib
-from functools import cached_property
 from itertools import compress
 
 from geometry_msgs.msg import PoseStamped, TransformStamped
@@ -25,9 +24,9 @@ from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.ros.background import run_in_thread
-from sdf_pose_bridge.ros.cdr import StampedRecords, Stamps
+from sdf_pose_bridge.ros.cdr import StampedRecords
 from sdf_pose_bridge.ros.parameters import Settings
-from sdf_pose_bridge.ros.publishers import NANOSECONDS, Publishers, Stamp, Topic
+from sdf_pose_bridge.ros.publishers import Publishers, Topic
 from sdf_pose_bridge.ros.topic_names import pose_topics_from_patterns, PoseTopics
 from sdf_pose_bridge.tf.joint_motion import MovingFrames, NO_DOF
 from sdf_pose_bridge.tf.joint_positions import JointPositions, NEVER
@@ -47,32 +46,34 @@ async def frames_from_scene(
 
     :param before: the frames that these ones replace.
     """
-    name = node.get_fully_qualified_name()
+    name, logger, publishers = (
+        node.get_fully_qualified_name(), node.get_logger(), before.publishers)
+    if loaded.tree.moving is not None:
+        publishers.opened(TF)
 
-    def prepared_topics() -> PoseTopics:
+    def frames_and_topics() -> tuple[PublishedFrames, PoseTopics]:
         # The first search for a name makes the index of all names.
         loaded.scene.has('')
-        return pose_topics_from_patterns(loaded.tree.frame_ids, settings.pose_topics, name)
+        topics = pose_topics_from_patterns(loaded.tree.frame_ids, settings.pose_topics, name)
+        frames = PublishedFrames(
+            publishers, loaded.tree, loaded.joint_positions, topics.names, before,
+            has_transforms=settings.publish_transforms)
+        return frames, topics
 
-    topics: PoseTopics = await run_in_thread(node, prepared_topics)
+    # The messages of many frames take long.
+    made: tuple[PublishedFrames, PoseTopics] = await run_in_thread(node, frames_and_topics)
+    frames, topics = made
     if topics.warning:
-        node.get_logger().warning(topics.warning)
-    if node.get_logger().is_enabled_for(LoggingSeverity.DEBUG):
+        logger.warning(topics.warning)
+    if logger.is_enabled_for(LoggingSeverity.DEBUG):
         for frame_id, name in topics.names.items():
-            node.get_logger().debug(f'frame "{frame_id}" has the topic ~/poses/{name}')
-    frames = PublishedFrames(
-        before.publishers, loaded.tree, loaded.joint_positions, topics.names, before,
-        has_transforms=settings.publish_transforms)
-    await run_in_thread(node, lambda: frames.lay_out(with_tf=before.tree is not loaded.tree))
+            logger.debug(f'frame "{frame_id}" has the topic ~/poses/{name}')
     return frames
 
 
 class PublishedFrames:
     """
     The frames of a tree on their topics.
-
-    Messages are made when they are first needed, so that nothing delays ``/tf_static``, or earlier
-    by :meth:`lay_out` in another thread.
 
     :param publishers: the publishers of the node. Publishers of the frames before are kept if
         these frames have the same topics.
@@ -89,40 +90,35 @@ class PublishedFrames:
     ) -> None:
         self.publishers = publishers
         self.tree = tree
-        self.stamp: Stamp = publishers.now() if before is None or before.tree is not tree else (
-            before.stamp)
+        self.stamp_ns: int = publishers.now_ns() if (
+            before is None or before.tree is not tree) else before.stamp_ns
         self._tf_static = publishers.opened(TF_STATIC)
+        self._fixed_transforms = _records_of_transforms(tree, tree.fixed_indices)
         self._transforms_topics = [
             _transforms_topic(len(tree.fixed_indices), 'fixed')] if has_transforms else []
         posed = () if tree.moving is None else tree.moving.posed_indices
-        self._moving_ids = {tree.frame_ids[index] for index in posed}
+        moving_ids = {tree.frame_ids[index] for index in posed}
         # A frame that begins to move has another publisher, which does not keep its last pose.
         self._pose_topics = {
             frame_id: Topic(
-                f'~/poses/{name}', PoseStamped,
-                part='moving' if frame_id in self._moving_ids else '')
+                f'~/poses/{name}', PoseStamped, part='moving' if frame_id in moving_ids else '')
             for frame_id, name in pose_topics.items()}
+        fixed = [
+            index for index, frame_id in enumerate(tree.frame_ids)
+            if frame_id in pose_topics and frame_id not in moving_ids]
+        self._fixed_pose_topics = [self._pose_topics[tree.frame_ids[index]] for index in fixed]
+        self._fixed_poses = StampedRecords(
+            [[tree.pose_frame] * len(fixed)], tree.poses_in_pose_frame[fixed])
         self.moving: PublishedMovingFrames | None = None
         """The moving frames; None if joints move nothing."""
         if tree.moving is not None and positions is not None:
             self.moving = PublishedMovingFrames(
                 publishers, tree, tree.moving, positions, self._pose_topics)
 
-    def lay_out(self, *, with_tf: bool) -> None:
-        """
-        Make the messages of fixed frames, which takes long for many frames.
-
-        :param with_tf: whether to make the message of ``/tf_static`` too.
-        """
-        if with_tf or self._transforms_topics:
-            self._fixed_transforms  # noqa: B018 - to look at it makes it
-        self._fixed_poses  # noqa: B018
-
     def publish_tf_static(self) -> None:
         """Publish all fixed frames on ``/tf_static``."""
-        records = self._fixed_transforms
-        records.set_stamps(self.stamp)
-        self._tf_static.publish(records.tf_message())
+        self._fixed_transforms.set_stamps(self.stamp_ns)
+        self._tf_static.publish(self._fixed_transforms.tf_message())
 
     async def publish_topics(self) -> None:
         """Publish all fixed frames on all other topics, and make those of moving frames."""
@@ -136,14 +132,14 @@ class PublishedFrames:
             self.publishers.opened(topic)
         await self._send_transforms()
         await self.publishers.replace(dict.fromkeys(topics))
-        await self._send(*self._fixed_poses)
+        await self._send(self._fixed_pose_topics, self._fixed_poses)
 
     async def publish_fixed_again(self) -> None:
         """Publish all fixed frames on all topics with a new stamp."""
-        self.stamp = self.publishers.now()
+        self.stamp_ns = self.publishers.now_ns()
         self.publish_tf_static()
         await self._send_transforms()
-        await self._send(*self._fixed_poses)
+        await self._send(self._fixed_pose_topics, self._fixed_poses)
 
     async def _send_transforms(self) -> None:
         for topic in self._transforms_topics:
@@ -151,22 +147,8 @@ class PublishedFrames:
             await self._send([topic] * len(records), records)
 
     async def _send(self, topics: Sequence[Topic], records: StampedRecords) -> None:
-        records.set_stamps(self.stamp)
+        records.set_stamps(self.stamp_ns)
         await self.publishers.send(topics, records.messages())
-
-    @cached_property
-    def _fixed_transforms(self) -> StampedRecords:
-        return _records_of_transforms(self.tree, self.tree.fixed_indices)
-
-    @cached_property
-    def _fixed_poses(self) -> tuple[Sequence[Topic], StampedRecords]:
-        tree = self.tree
-        posed = [
-            (index, self._pose_topics[frame_id]) for index, frame_id in enumerate(tree.frame_ids)
-            if frame_id in self._pose_topics and frame_id not in self._moving_ids]
-        poses = tree.poses_in_pose_frame[[index for index, _ in posed]]
-        return [topic for _, topic in posed], StampedRecords(
-            [[tree.pose_frame] * len(posed)], poses)
 
 
 class PublishedMovingFrames:
@@ -186,11 +168,10 @@ class PublishedMovingFrames:
         self._publishers = publishers
         self.frames = moving
         self.positions = positions
-        # The last stamp of each moving transform, the newest of these, and which have to be
-        # published.
+        # The last stamp of each moving transform.
         self._stamps_ns = np.full(len(moving.indices), NEVER)
-        self._newest_ns = NEVER
-        self._is_waiting = np.zeros(len(moving.indices), np.bool_)
+        self.is_waiting = np.zeros(len(moving.indices), np.bool_)
+        """Which of the moving transforms wait for the end of a period."""
         self._tf = publishers.opened(TF)
         self.transforms_topic = _transforms_topic(len(moving.indices), 'moving')
         self._transforms = _records_of_transforms(tree, moving.indices)
@@ -217,27 +198,16 @@ class PublishedMovingFrames:
         :param ignore_stamps: whether it need not be newer.
         :return: those for which it is newer.
         """
-        if stamp_ns <= self._newest_ns and not ignore_stamps:
+        if not ignore_stamps:
             rows = rows[self._stamps_ns[rows] < stamp_ns]
         self._stamps_ns[rows] = stamp_ns
-        self._newest_ns = max(self._newest_ns, stamp_ns)
         return rows
-
-    def wait(self, rows: NDArray[np.intp]) -> None:
-        """Have moving transforms wait for :meth:`publish_waiting`."""
-        self._is_waiting[rows] = True
 
     def forget_stamps(self) -> None:
         """Accept any stamp next, after time has jumped back."""
-        self._stamps_ns[:] = self._newest_ns = NEVER
-        self._is_waiting[:] = False
+        self._stamps_ns[:] = NEVER
+        self.is_waiting[:] = False
         self.positions.forget_stamps()
-
-    def publish_waiting(self) -> bool:
-        """Publish the moving transforms that wait; return whether there are any."""
-        rows = np.flatnonzero(self._is_waiting)
-        self.publish_tf(rows)
-        return len(rows) > 0
 
     def publish_all(self) -> bool:
         """
@@ -251,25 +221,25 @@ class PublishedMovingFrames:
         is_stamped = last_ns != NEVER
         # TF would reject other transforms with the same stamps.
         self._stamps_ns[rows[is_stamped]] = last_ns[is_stamped] + 1
-        self._newest_ns = int(self._stamps_ns.max(initial=NEVER))
-        self._publish_tf(rows, np.where(is_stamped, last_ns + 1, self._publishers.now_ns()))
+        self.publish_tf(rows, np.where(is_stamped, last_ns + 1, self._publishers.now_ns()))
         return len(rows) > 0 and not is_stamped.any()
 
-    def publish_tf(self, rows: NDArray[np.intp]) -> None:
+    def publish_tf(
+        self, rows: NDArray[np.intp], stamps_ns: NDArray[np.int64] | None = None,
+    ) -> None:
         """
-        Publish moving transforms in one message on ``/tf``, with their stamps.
+        Publish moving transforms in one message on ``/tf``.
 
         :param rows: their indices, in ascending order; without any, nothing is published.
+        :param stamps_ns: their stamps in nanoseconds; by default those of :meth:`stamp`.
         """
-        self._publish_tf(rows, self._stamps_ns[rows])
-
-    def _publish_tf(self, rows: NDArray[np.intp], stamps_ns: NDArray[np.int64]) -> None:
         if not len(rows):
             return
-        self._is_waiting[rows] = False
+        self.is_waiting[rows] = False
         self._transforms.set_poses(self.frames.transforms(self.positions.values))
-        self._tf.publish(
-            self._transforms.tf_message_of_rows(rows, _stamps_from_ns(stamps_ns)))
+        self._transforms.set_stamps(
+            self._stamps_ns[rows] if stamps_ns is None else stamps_ns, rows)
+        self._tf.publish(self._transforms.tf_message(rows))
 
     def publish_topics(self, *, only_listeners: bool) -> None:
         """
@@ -313,9 +283,9 @@ class PublishedMovingFrames:
             return None
         return publisher
 
-    def _stamps(self, dofs: Indices, dof_of_reference: int = NO_DOF) -> Stamps:
+    def _stamps(self, dofs: Indices, dof_of_reference: int = NO_DOF) -> NDArray[np.int64]:
         """
-        Return the stamps of poses, as messages take them.
+        Return the stamps of poses in nanoseconds.
 
         :param dofs: the last degree of freedom before each frame; -1 for none.
         :param dof_of_reference: that before the frame in which all of them are given.
@@ -323,18 +293,10 @@ class PublishedMovingFrames:
         """
         known = np.append(self.positions.stamps_ns, NEVER)
         newest = np.maximum(known[dofs], known[dof_of_reference])
-        return _stamps_from_ns(np.where(newest == NEVER, self._publishers.now_ns(), newest))
-
-
-def _stamps_from_ns(stamps_ns: NDArray[np.int64]) -> Stamps:
-    """Return seconds and nanoseconds, shape (n, 2)."""
-    stamps = np.empty((len(stamps_ns), 2), np.int64)
-    np.divmod(stamps_ns, NANOSECONDS, stamps[:, 0], stamps[:, 1])
-    return stamps
+        return np.where(newest == NEVER, self._publishers.now_ns(), newest)
 
 
 def _records_of_transforms(tree: TfTree, indices: NDArray[np.intp]) -> StampedRecords:
-    """Return transforms with the ids of their parents and children."""
     return StampedRecords(tree.ids_of_transforms(indices), tree.transforms[indices])
 
 

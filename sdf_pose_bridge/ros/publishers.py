@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
 from rclpy.event_handler import PublisherEventCallbacks, QoSPublisherMatchedInfo
 from rclpy.node import Node
@@ -22,12 +22,6 @@ PUBLISHERS_AT_ONCE = 40
 MOST_PUBLISHERS = 1010
 """The recipes for networks in docs/ros_interface.md were measured with so many: the topics of the
 poses of 1000 frames, and a few others."""
-
-Stamp: TypeAlias = tuple[int, int]
-"""Seconds and nanoseconds."""
-
-NANOSECONDS = 1_000_000_000
-"""In a second."""
 
 
 class Topic(NamedTuple):
@@ -51,11 +45,6 @@ class Publishers:
     def __init__(self, node: Node) -> None:
         self._node = node
         self._publishers: dict[Topic, Publisher] = {}
-
-    def now(self) -> Stamp:
-        """Return the time of the node."""
-        stamp: Stamp = self._node.get_clock().now().seconds_nanoseconds()
-        return stamp
 
     def now_ns(self) -> int:
         """Return the time of the node in nanoseconds."""

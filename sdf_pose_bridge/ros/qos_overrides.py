@@ -38,20 +38,14 @@ def sentences_about_overrides(given: Mapping[str, Parameter]) -> list[str]:
     """
     sentences = []
     for name, parameter in given.items():
-        policy = name.rpartition('.')[2]
-        if not name.startswith(QOS_OVERRIDES):
-            continue
-        if policy in _VALUES:
-            known = [
-                value.name.lower() for value in _VALUES[policy] if value.name != 'UNKNOWN']
-            if parameter.value not in known:
-                sentences.append(
-                    f'parameter {name} is {parameter.value}; it must be one of '
-                    f'{", ".join(known)}')
+        policy, value = name.rpartition('.')[2], parameter.value
+        known = [each.name.lower() for each in _VALUES.get(policy, ()) if each.name != 'UNKNOWN']
+        rule = ''
+        if known and value not in known:
+            rule = f'one of {", ".join(known)}'
         elif policy == 'depth' and (
-                parameter.type_ is not Parameter.Type.INTEGER
-                or not 0 <= parameter.value <= LARGEST_DEPTH):
-            sentences.append(
-                f'parameter {name} is {parameter.value}; it must be an integer from 0 to '
-                f'{LARGEST_DEPTH}')
+                parameter.type_ is not Parameter.Type.INTEGER or not 0 <= value <= LARGEST_DEPTH):
+            rule = f'an integer from 0 to {LARGEST_DEPTH}'
+        if rule and name.startswith(QOS_OVERRIDES):
+            sentences.append(f'parameter {name} is {value}; it must be {rule}')
     return sentences

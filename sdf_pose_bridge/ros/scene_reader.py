@@ -5,17 +5,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
-from sdf_pose_bridge.errors import FileReadError, LimitError, PassingReadError, Place, SdfWarning
-from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.errors import FileReadError, LimitError, PassingReadError, Place
 from sdf_pose_bridge.limited_process import LimitedProcess, ProcessEndedError
 from sdf_pose_bridge.process_limits import FOR_FILES, LimitExceededError
-from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadedScene, LoadRequest
-
-if TYPE_CHECKING:
-    from sdf_pose_bridge.tf.frame_setting import FrameChange
-    from sdf_pose_bridge.tf.visual_markers import VisualMarker
+from sdf_pose_bridge.tf.loaded_scene import LoadedScene, LoadRequest
 
 _Result = TypeVar('_Result')
 
@@ -31,7 +26,7 @@ def _loaded_scene(request: LoadRequest) -> LoadedScene:
     return loaded_scene_from_request(request)
 
 
-class SceneReader:
+class SceneReader(LimitedProcess):
     """
     Reads files, each in a process of its own that is forked from this one.
 
@@ -45,11 +40,7 @@ class SceneReader:
     """
 
     def __init__(self) -> None:
-        self._process = LimitedProcess(_prepare)
-
-    def close(self) -> None:
-        """End the processes; nothing can be read any more."""
-        self._process.close()
+        super().__init__(_prepare)
 
     def loaded_scene(
         self, request: LoadRequest, meanwhile: Callable[[], None] | None = None,
@@ -59,36 +50,21 @@ class SceneReader:
 
         :param meanwhile: a function to call here while it is read.
         """
-        return self._result(request, _loaded_scene, request, meanwhile=meanwhile)
+        return self.result(request, _loaded_scene, request, meanwhile=meanwhile)
 
-    def markers(
-        self, loaded: LoadedScene,
-    ) -> tuple[list[VisualMarker], tuple[SdfWarning, ...]] | None:
-        """Make the markers of a loaded scene, as :func:`markers_from_text` does."""
-        # Imported here because it takes 6 ms, and few nodes have a listener.
-        from sdf_pose_bridge.tf.visual_markers import markers_from_text
-        return self._result(
-            loaded.request, markers_from_text, loaded.text, loaded.path, loaded.request,
-            fingerprint_of_scene(loaded.scene))
-
-    def frame_change(
-        self, loaded: LoadedScene, frame: str, asked: Pose, reference: str,
-    ) -> FrameChange:
-        """Find the change of a file, as :func:`frame_change_from_request` does."""
-        # Imported here because it takes 7 ms, and few nodes write files.
-        from sdf_pose_bridge.tf.frame_setting import frame_change_from_request
-        return self._result(
-            loaded.request, frame_change_from_request, loaded.request,
-            fingerprint_of_scene(loaded.scene), frame, asked, reference,
-            loaded.joint_positions)
-
-    def _result(
+    def result(
         self, request: LoadRequest, function: Callable[..., _Result], *arguments: object,
         meanwhile: Callable[[], None] | None = None,
     ) -> _Result:
+        """
+        Call a function that reads the files of a request.
+
+        :param function: a function of a module; its arguments and result can be pickled.
+        :param meanwhile: a function to call here while the other one runs.
+        """
         place = Place(request.source)
         try:
-            return self._process.call(FOR_FILES, function, *arguments, meanwhile=meanwhile)
+            return self.call(FOR_FILES, function, *arguments, meanwhile=meanwhile)
         except LimitExceededError as error:
             msg = f'the file needs {error} to be read'
             raise LimitError(msg, place) from None

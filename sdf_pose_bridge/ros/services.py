@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import array
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Iterable
 import traceback
 from typing import Any, TypeAlias
 
@@ -15,19 +15,28 @@ from rclpy.clock import Clock
 from rclpy.node import Node
 from rclpy.qos import qos_profile_parameters
 
-from sdf_pose_bridge.errors import JointPositionError, Place, PoseNotSetError, UnknownFrameError
+from sdf_pose_bridge.errors import (
+    JointPositionError,
+    Place,
+    PoseNotSetError,
+    SdfError,
+    UnknownFrameError,
+)
 from sdf_pose_bridge.geometry.converted_rotation import converted_rotation
 from sdf_pose_bridge.geometry.formats import converted_poses, POSE_FORMATS, PoseFormatError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import RotationError
 from sdf_pose_bridge.ros.background import CoroutineLock, run_in_thread
 from sdf_pose_bridge.ros.scene_reader import SceneReader
-from sdf_pose_bridge.tf.loaded_scene import LoadedScene
+from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadedScene
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge_interfaces.srv import ConvertPoses, ConvertRotation, LookupPose, SetPose
 
-Answer: TypeAlias = Callable[[Any, Any], Any]
-"""Fills the response to a request and returns it."""
+Answer: TypeAlias = Callable[[Any, Any], None]
+"""Fills the response to a request."""
+
+REFUSALS = (RotationError, PoseFormatError, UnknownFrameError, JointPositionError)
+"""Exceptions about requests that are not valid."""
 
 SERVICE_QOS = qos_profile_parameters
 """Keeps 1000 requests; the default keeps ten, so that requests of more callers would be lost."""
@@ -46,10 +55,9 @@ def add_services(node: Node, lookup: Callable[[], Awaitable[PoseLookup]]) -> Non
     # Requests that may take long are answered in a thread, one after the other.
     turn = CoroutineLock(node)
 
-    async def answered(answer: Answer, request: Any, response: Any, *, is_quick: bool) -> Any:
-        answer = never_raising(answer, logger.error)
-        if is_quick:
-            return answer(request, response)
+    async def in_thread(
+        answer: Callable[[Any, Any], Any], request: Any, response: Any,
+    ) -> Any:
         async with turn:
             try:
                 return await run_in_thread(node, lambda: answer(request, response))
@@ -57,92 +65,66 @@ def add_services(node: Node, lookup: Callable[[], Awaitable[PoseLookup]]) -> Non
                 response.message = str(error)
                 return response
 
-    async def convert_rotation(
-        request: ConvertRotation.Request, response: ConvertRotation.Response,
-    ) -> Any:
-        return await answered(answer_to_convert_rotation, request, response, is_quick=True)
-
     async def convert_poses(
         request: ConvertPoses.Request, response: ConvertPoses.Response,
     ) -> Any:
-        return await answered(answer_to_convert_poses, request, response, is_quick=False)
+        answer = never_raising(answer_to_convert_poses, logger.error)
+        return await in_thread(answer, request, response)
 
     async def lookup_pose(request: LookupPose.Request, response: LookupPose.Response) -> Any:
         current = await lookup()
-        reference = request.relative_to
-        # Finding the nearest name takes long if there are many.
-        return await answered(
+        answer = never_raising(
             lambda request, response: answer_to_lookup_pose(request, response, current, clock),
-            request, response,
-            is_quick=current.knows(request.frame) and (not reference or current.knows(reference)))
+            logger.error)
+        if current.knows(request.frame) and (
+                not request.relative_to or current.knows(request.relative_to)):
+            return answer(request, response)
+        # Finding the nearest name takes long if there are many.
+        return await in_thread(answer, request, response)
 
-    for service_type, callback in (
-        (ConvertRotation, convert_rotation), (ConvertPoses, convert_poses),
-        (LookupPose, lookup_pose),
+    for service_type, name, callback in (
+        (ConvertRotation, 'convert_rotation',
+         never_raising(answer_to_convert_rotation, logger.error)),
+        (ConvertPoses, 'convert_poses', convert_poses), (LookupPose, 'lookup_pose', lookup_pose),
     ):
         node.create_service(
-            service_type, f'~/{callback.__name__}', callback, qos_profile=SERVICE_QOS,
-            callback_group=group)
+            service_type, f'~/{name}', callback, qos_profile=SERVICE_QOS, callback_group=group)
 
 
 def answer_to_convert_rotation(
     request: ConvertRotation.Request, response: ConvertRotation.Response,
-) -> ConvertRotation.Response:
+) -> None:
     """Convert one rotation."""
-    rpy, quaternion = request.rpy, request.quaternion
-    try:
-        answer = converted_rotation(
-            request.given, (rpy.x, rpy.y, rpy.z),
-            (quaternion.x, quaternion.y, quaternion.z, quaternion.w), degrees=request.degrees)
-    except RotationError as error:
-        response.message = str(error)
-        return response
-    rpy, quaternion = response.rpy, response.quaternion
-    rpy.x, rpy.y, rpy.z = answer.rpy
-    quaternion.x, quaternion.y, quaternion.z, quaternion.w = answer.quat_xyzw
+    answer = converted_rotation(
+        request.given, _numbers(request.rpy, 'xyz'), _numbers(request.quaternion, 'xyzw'),
+        degrees=request.degrees)
+    _fill(response.rpy, answer.rpy)
+    _fill(response.quaternion, answer.quat_xyzw)
     response.gimbal_lock = answer.gimbal_lock
-    response.success = True
-    return response
 
 
 def answer_to_convert_poses(
     request: ConvertPoses.Request, response: ConvertPoses.Response,
-) -> ConvertPoses.Response:
+) -> None:
     """Convert poses with at most ``MOST_NUMBERS`` numbers."""
     if len(request.values) > MOST_NUMBERS:
-        response.message = (
-            f'values has {len(request.values)} numbers; a call can have at most {MOST_NUMBERS}')
-        return response
-    try:
-        converted = converted_poses(
-            np.asarray(request.values), request.from_format, request.to_format)
-    except PoseFormatError as error:
-        response.message = str(error)
-        return response
+        msg = f'values has {len(request.values)} numbers; a call can have at most {MOST_NUMBERS}'
+        raise PoseFormatError(msg)
+    converted = converted_poses(
+        np.asarray(request.values), request.from_format, request.to_format)
     # The message would check every element of anything but an array.array.
     response.values = array.array('d', converted.tobytes())
-    response.success = True
-    return response
 
 
 def answer_to_lookup_pose(
     request: LookupPose.Request, response: LookupPose.Response, lookup: PoseLookup, clock: Clock,
-) -> LookupPose.Response:
+) -> None:
     """Look up a pose."""
-    try:
-        found = lookup.pose(request.frame, request.relative_to)
-    except (UnknownFrameError, JointPositionError) as error:
-        response.message = error.message
-        return response
-    # Filling the existing messages is faster than making new ones.
-    pose = response.pose.pose
-    position, orientation = pose.position, pose.orientation
-    position.x, position.y, position.z = found.pose[:3]
-    orientation.x, orientation.y, orientation.z, orientation.w = found.pose[3:]
+    found = lookup.pose(request.frame, request.relative_to)
+    _fill(response.pose.pose.position, found.pose[:3])
+    _fill(response.pose.pose.orientation, found.pose[3:])
     response.pose.header.frame_id = found.frame_id
     response.pose.header.stamp = clock.now().to_msg()
-    response.success = True
-    return response
 
 
 def set_pose(
@@ -160,8 +142,12 @@ def set_pose(
     if not loaded.request.sdf_file:
         msg = 'the pose is in the parameter robot_description, not in a file'
         raise PoseNotSetError(msg, Place(str(loaded.path)))
-    change = reader.frame_change(
-        loaded, request.frame, _pose_from_request(request, loaded), request.pose.header.frame_id)
+    # Imported here because it takes 7 ms, and few nodes write files.
+    from sdf_pose_bridge.tf.frame_setting import frame_change_from_request
+    change = reader.result(
+        loaded.request, frame_change_from_request, loaded.request,
+        fingerprint_of_scene(loaded.scene), request.frame, _pose_from_request(request, loaded),
+        request.pose.header.frame_id, loaded.joint_positions)
     if not request.dry_run:
         change.file.write()
     return SetPose.Response(
@@ -170,10 +156,8 @@ def set_pose(
 
 
 def _pose_from_request(request: SetPose.Request, loaded: LoadedScene) -> Pose:
-    position, quaternion = request.pose.pose.position, request.pose.pose.orientation
-    numbers = [
-        position.x, position.y, position.z,
-        quaternion.x, quaternion.y, quaternion.z, quaternion.w]
+    given = request.pose.pose
+    numbers = [*_numbers(given.position, 'xyz'), *_numbers(given.orientation, 'xyzw')]
     place = Place(str(loaded.path))
     try:
         pose = Pose(*converted_poses(numbers, 'sdf_quat_xyzw', 'sdf_quat_xyzw').tolist())
@@ -185,20 +169,34 @@ def _pose_from_request(request: SetPose.Request, loaded: LoadedScene) -> Pose:
     return pose
 
 
-def never_raising(answer: Answer, log_error: Callable[[str], object]) -> Answer:
-    """
-    Return a callback that also answers after a defect; an exception would end the node.
+def _numbers(message: Any, fields: str) -> Any:
+    return tuple(getattr(message, field) for field in fields)
 
-    :param answer: answers a request.
-    :param log_error: takes the traceback of an exception.
-    :return: a callback that answers ``success: false`` instead of raising.
+
+def _fill(message: Any, numbers: Iterable[float]) -> None:
+    for field, number in zip('xyzw', numbers, strict=False):
+        setattr(message, field, number)
+
+
+def never_raising(answer: Answer, log_error: Callable[[str], object]) -> Callable[[Any, Any], Any]:
+    """
+    Return a callback that also answers after a refusal or a defect.
+
+    :param answer: fills the response to a request, or raises one of ``REFUSALS``.
+    :param log_error: takes the traceback of another exception.
+    :return: a callback that answers ``success: false`` instead of raising, which would end the
+        node.
     """
     def callback(request: Any, response: Any) -> Any:
         try:
-            return answer(request, response)
+            answer(request, response)
+        except REFUSALS as error:
+            response.message = error.message if isinstance(error, SdfError) else str(error)
         except Exception as error:  # noqa: BLE001 - whatever it is, the client must be answered
             log_error(f'internal error in a service:\n{traceback.format_exc()}')
-            refusal = type(response)()
-            refusal.message = f'internal error, see the log of the node: {error!r}'
-            return refusal
+            response = type(response)()
+            response.message = f'internal error, see the log of the node: {error!r}'
+        else:
+            response.success = True
+        return response
     return callback

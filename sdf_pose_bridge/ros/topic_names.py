@@ -172,30 +172,18 @@ def joint_state_topics_from_patterns(
     :param models: its top-level models with moving joints.
     :param full_name: returns the full name of a topic, after it is remapped.
     """
-    warnings = []
-    names = []
-    for pattern in dict.fromkeys(patterns):
-        if MODEL_FIELD not in pattern and (world or WORLD_FIELD not in pattern):
-            names.append((pattern, ''))
-        elif MODEL_FIELD in pattern:
-            names += [
-                (pattern.replace(MODEL_FIELD, topic_name_from_frame_id(each)), each)
-                for each in models]
     places: dict[str, list[tuple[str, str]]] = {}
-    for pattern, model in names:
-        name = pattern.replace(WORLD_FIELD, topic_name_from_frame_id(world))
-        places.setdefault(full_name(name), []).append((name, model))
-    too_long = [
-        model for full, found in places.items() if len(full) > LONGEST_FULL_NAME
-        for _, model in found]
-    if too_long:
-        warnings.append(
-            f'no topic of joint states for {names_in_line(too_long)}: its name would be longer '
-            'than the middleware allows')
-    topics = {}
+    for pattern in dict.fromkeys(patterns):
+        if WORLD_FIELD in pattern and not world:
+            continue
+        for model in models if MODEL_FIELD in pattern else ('',):
+            name = pattern.replace(MODEL_FIELD, topic_name_from_frame_id(model)).replace(
+                WORLD_FIELD, topic_name_from_frame_id(world))
+            places.setdefault(full_name(name), []).append((name, model))
+    topics, too_long, warnings = {}, [], []
     for full, found in places.items():
         name, model = found[0]
-        owners = dict.fromkeys(model for _, model in found)
+        owners = dict.fromkeys(owner for _, owner in found)
         if len(owners) > 1:
             warnings.append(
                 f'joint_states_topics has {full} for '
@@ -204,7 +192,13 @@ def joint_state_topics_from_patterns(
             model = ''
         if len(full) <= LONGEST_FULL_NAME:
             topics[name] = model
-    if not names:
+        else:
+            too_long += [owner for _, owner in found]
+    if too_long:
+        warnings.insert(
+            0, f'no topic of joint states for {names_in_line(too_long)}: its name would be longer '
+            'than the middleware allows')
+    if not places:
         warnings.append(
             'joint_states_topics names no topic, because there is no world with a model that has '
             'moving joints; joint_states names one for all joints')

@@ -18,8 +18,8 @@ from sdf_pose_bridge.ros.background import run_in_thread
 from sdf_pose_bridge.ros.log_lines import lines_from_error, lines_from_warnings
 from sdf_pose_bridge.ros.publishers import new_publisher, Topic
 from sdf_pose_bridge.ros.scene_reader import SceneReader
-from sdf_pose_bridge.tf.loaded_scene import LoadedScene
-from sdf_pose_bridge.tf.visual_markers import VisualMarker
+from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadedScene
+from sdf_pose_bridge.tf.visual_markers import markers_from_text, VisualMarker
 
 
 class VisualPublisher:
@@ -77,7 +77,9 @@ def _message_and_warnings(
     loaded: LoadedScene, reader: SceneReader,
 ) -> tuple[MarkerArray | None, list[str]]:
     try:
-        found = reader.markers(loaded)
+        found = reader.result(
+            loaded.request, markers_from_text, loaded.text, loaded.path, loaded.request,
+            fingerprint_of_scene(loaded.scene))
     except (SdfError, MemoryError) as error:
         return None, [f'~/visuals is not updated: {line}' for line in lines_from_error(error)]
     if found is None:

@@ -20,7 +20,7 @@ from rclpy.guard_condition import GuardCondition
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.subscription import Subscription
 
-from sdf_pose_bridge.ros.publishers import NANOSECONDS
+from sdf_pose_bridge.ros.cdr import NANOSECONDS
 
 _FOREVER = -1
 

@@ -17,13 +17,14 @@ from sdf_pose_bridge.ros.cdr import (
     StampedRecords,
 )
 
-STAMPS = st.tuples(st.integers(0, 2**31 - 1), st.integers(0, 999_999_999))
+STAMPS = st.integers(0, 2**31 * 10**9 - 1)
 NAMES = st.text(st.characters(codec='utf-8', exclude_characters='\0'), max_size=20)
 NUMBERS = st.lists(
     st.floats(allow_nan=False) | st.sampled_from([-0.0, 5e-324, -2.3e-308]),
     min_size=7, max_size=7)
 ROWS = st.lists(st.tuples(NAMES, NAMES, NUMBERS), max_size=6)
 LENGTHS = st.integers(0, 9).map('n'.__mul__)
+STAMP = 1_000_000_002
 POSITIONS = st.lists(st.floats(allow_nan=False), max_size=5)
 
 
@@ -33,13 +34,13 @@ def columns(rows):
     return ([row[0] for row in rows], [row[1] for row in rows]), numbers
 
 
-def tf_message(ids, numbers, stamp=(1, 2)):
+def tf_message(ids, numbers, stamp=STAMP):
     records = StampedRecords(ids, numbers)
     records.set_stamps(stamp)
     return records.tf_message()
 
 
-def stamped_messages(ids, numbers, stamps=(1, 2)):
+def stamped_messages(ids, numbers, stamps=STAMP):
     records = StampedRecords(ids, numbers)
     records.set_stamps(stamps)
     return records.messages()
@@ -54,7 +55,7 @@ def assert_read_by_rclpy(data, message):
 
 
 def stamped(message, stamp, frame_id):
-    message.header.stamp.sec, message.header.stamp.nanosec = stamp
+    message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, 10**9)
     message.header.frame_id = frame_id
     return message
 
@@ -71,12 +72,6 @@ def transform_message(row, stamp):
 def tf_message_object(rows, stamp):
     from tf2_msgs.msg import TFMessage
     return TFMessage(transforms=[transform_message(row, stamp) for row in rows])
-
-
-@pytest.mark.parametrize('ids', [[['a\0b'], ['a']], [['a'], ['a\0b']], [['a\0b']]])
-def test_a_zero_character_is_refused(ids):
-    with pytest.raises(ValueError, match='zero character'):
-        StampedRecords(ids, np.zeros((1, 7)))
 
 
 @given(rows=ROWS, stamp=STAMPS)
@@ -105,7 +100,7 @@ def test_poses_are_read_by_rclpy(rows, stamp):
 def test_long_names_are_read_by_rclpy():
     lengths = [0, 1, 3, *range(50, 64), *range(108, 116), 1000]
     rows = [('p' * first, 'c' * second, [1.0] * 7) for first in lengths for second in lengths]
-    assert_read_by_rclpy(tf_message(*columns(rows)), tf_message_object(rows, (1, 2)))
+    assert_read_by_rclpy(tf_message(*columns(rows)), tf_message_object(rows, STAMP))
 
 
 @given(rows=ROWS, first=STAMPS, second=STAMPS)
@@ -118,20 +113,19 @@ def test_messages_can_be_stamped_again(rows, first, second):
 
 @given(rows=ROWS)
 def test_each_pose_can_have_its_stamp(rows):
-    stamps = np.stack([np.arange(len(rows)), np.arange(len(rows)) + 7], axis=-1)
+    stamps = np.arange(len(rows)) * 1_000_000_007
     assert stamped_messages(*columns(rows), stamps) == [
-        stamped_messages(*columns([row]), (number, number + 7))[0]
-        for number, row in enumerate(rows)]
+        stamped_messages(*columns([row]), stamp)[0]
+        for stamp, row in zip(stamps.tolist(), rows, strict=True)]
 
 
 @given(rows=ROWS.filter(len), data=st.data())
 def test_a_tf_message_of_some_transforms_is_that_of_a_scene_with_these_alone(rows, data):
     records = StampedRecords(*columns(rows))
-    for _ in range(2):
-        chosen = sorted(data.draw(st.sets(st.integers(0, len(rows) - 1), min_size=1)))
-        for stamp in ((3, 4), (5, 6)):
-            assert records.tf_message_of_rows(np.array(chosen), stamp) == tf_message(
-                *columns([rows[row] for row in chosen]), stamp)
+    chosen = sorted(data.draw(st.sets(st.integers(0, len(rows) - 1), min_size=1)))
+    records.set_stamps(3_000_000_004, np.array(chosen))
+    assert records.tf_message(np.array(chosen)) == tf_message(
+        *columns([rows[row] for row in chosen]), 3_000_000_004)
 
 
 def test_no_transforms_are_one_empty_message():
@@ -147,7 +141,7 @@ def test_poses_can_be_replaced(rows):
     ids, numbers = columns(rows)
     records = StampedRecords(ids, np.zeros_like(numbers))
     records.set_poses(numbers)
-    assert records.messages() == stamped_messages(ids, numbers, (0, 0))
+    assert records.messages() == stamped_messages(ids, numbers, 0)
 
 
 def joint_state(names, positions, *, frame_id='', sec=0, nanosec=0, velocities=()):
@@ -191,30 +185,30 @@ def test_another_encoding_is_refused():
 def test_content_is_that_of_the_message(names, positions, frame_id, sec, velocities):
     data = joint_state(
         names, positions, frame_id=frame_id, sec=sec, nanosec=sec // 3, velocities=velocities)
-    found = joint_state_from_bytes(data)
-    assert found.stamp == (sec, sec // 3)
-    assert list(found.names.names) == names
-    np.testing.assert_array_equal(found.positions, positions)
-    again = joint_state_from_bytes(data, found.names)
-    assert again.names is found.names
-    np.testing.assert_array_equal(again.positions, positions)
+    stamp, found, values = joint_state_from_bytes(data)
+    assert stamp == (sec, sec // 3)
+    assert list(found.names) == names
+    np.testing.assert_array_equal(values, positions)
+    _, again, values = joint_state_from_bytes(data, found)
+    assert again is found
+    np.testing.assert_array_equal(values, positions)
 
 
 @given(st.lists(NAMES, min_size=1, max_size=5), st.lists(NAMES, max_size=5), POSITIONS)
 def test_names_of_another_message_do_not_mislead(known, names, positions):
-    before = joint_state_from_bytes(joint_state(known, []))
-    found = joint_state_from_bytes(joint_state(names, positions), before.names)
-    assert list(found.names.names) == names
-    np.testing.assert_array_equal(found.positions, positions)
+    _, before, _ = joint_state_from_bytes(joint_state(known, []))
+    _, found, values = joint_state_from_bytes(joint_state(names, positions), before)
+    assert list(found.names) == names
+    np.testing.assert_array_equal(values, positions)
 
 
 def test_a_name_that_is_not_utf_8_is_read_as_far_as_it_is():
     data = joint_state(['elbow'], [2.5]).replace(b'elbow', b'elb\xffw')
-    assert joint_state_from_bytes(data).names.names == ('elb\ufffdw',)
+    assert joint_state_from_bytes(data)[1].names == ('elb\ufffdw',)
 
 
 def test_big_endian_is_read():
     header_and_names = struct.pack('>iII4xII2s2x', 7, 8, 1, 1, 2, b'j\0')
     data = b'\0\0\0\0' + header_and_names + struct.pack('>Id', 1, 2.5)
-    found = joint_state_from_bytes(data)
-    assert (found.stamp, found.names.names, found.positions.tolist()) == ((7, 8), ('j',), [2.5])
+    stamp, names, positions = joint_state_from_bytes(data)
+    assert (stamp, names.names, positions.tolist()) == ((7, 8), ('j',), [2.5])

@@ -13,12 +13,10 @@ from rclpy.parameter import Parameter
 
 from sdf_pose_bridge.ros.given_parameters import (
     changed_settings,
-    hint_about_command_line,
     parameter_with_type,
     settings_from_node,
     settings_from_values,
     warnings_about_unknown_parameters,
-    words_about_wrong_type,
 )
 from sdf_pose_bridge.ros.parameters import DECLARATIONS, SettingsError
 from sdf_pose_bridge.sdformat.grammar import Kind
@@ -238,40 +236,6 @@ def test_every_parameter_explains_itself(make_node, name):
     assert Parameter.Type(descriptor.type) is Parameter.Type.from_parameter_value(typical)
 
 
-# Another rclpy
-
-
-class WithoutPrivateNames:
-    """A node with its public names alone."""
-
-    def __init__(self, node):
-        self._node = node
-
-    def __getattr__(self, name):
-        if name.startswith('_'):
-            raise AttributeError(name)
-        return getattr(self._node, name)
-
-
-@pytest.mark.parametrize('arguments', [
-    '', '-p publish_rate:=10 -p kinds:=[link]', '-p pose_topics:=[]', '-p resource_paths:=[/a,/b]',
-    '-p kinds:=[]', '-p model:=5', '-p watch:=maybe', '-p allow_set_pose:=true'])
-def test_parameters_are_read_without_private_names_of_rclpy(make_node, arguments):
-    def outcome(node):
-        try:
-            return settings_from_node(node).values
-        except SettingsError as error:
-            return error.sentences
-
-    nodes = [make_node(name, *FILE, *arguments.split()) for name in ('a', 'b')]
-    assert outcome(WithoutPrivateNames(nodes[0])) == outcome(nodes[1])
-
-
-def test_unknown_parameters_cannot_be_seen_without_private_names_of_rclpy(make_node):
-    node = make_node('bridge', *FILE, '-p', 'color:=3')
-    assert warnings_about_unknown_parameters(WithoutPrivateNames(node)) == []
-
-
 # Types
 
 
@@ -295,11 +259,3 @@ def test_a_value_with_the_same_meaning_is_converted(type_, value, wanted, conver
     found = parameter_with_type(Parameter('p', type_, value), wanted)
     assert (found.name, found.type_, found.value) == ('p', wanted, converted)
     assert type(found.value) is type(converted)
-
-
-def test_a_wrong_type_is_explained():
-    given = Parameter('p', TYPE.INTEGER, 5)
-    assert words_about_wrong_type(given, TYPE.STRING) == (
-        'is 5, which is an integer; it must be a string')
-    assert hint_about_command_line(given, TYPE.STRING) == ''', so quote it twice: -p "p:='5'"'''
-    assert hint_about_command_line(given, TYPE.BOOL) == ''

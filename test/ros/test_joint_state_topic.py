@@ -41,7 +41,7 @@ def make_read(make_node):
     topic = JointStateTopic(node, 'a/j', 'a')
 
     def read(data):
-        message = topic.read(data, meanings, positions)
+        message = topic.read(data, meanings)
         if message is None:
             return None
         names = [positions.names[dof] for dof in message.meaning.selection.dofs]

@@ -19,8 +19,13 @@ from std_msgs.msg import Header
 from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge import load_text
-from sdf_pose_bridge.ros.joint_state_thread import Rule, TOPICS_PERIOD_S
-from sdf_pose_bridge.ros.joint_states import JointStates, SUBSCRIPTIONS_AT_ONCE
+from sdf_pose_bridge.ros.joint_states import (
+    INITIAL_PERIOD_S,
+    JointStates,
+    SUBSCRIPTIONS_AT_ONCE,
+    TOPICS_PERIOD_S,
+)
+from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.ros.topic_names import JointStateTopics
@@ -40,7 +45,13 @@ TOPICS = JointStateTopics({'joint_states': ''})
 TWO_ARMS = '<sdf version="1.11"><world name="w">{}{}</world></sdf>'.format(*(
     ARM.partition('">')[2].replace('</sdf>', '').replace('"arm"', f'"{name}"') for name in 'ab'))
 TWO_TOPICS = JointStateTopics({'a/j': 'a', 'b/j': 'b'})
-EACH = Rule(0.0, False)
+
+
+def rule_of(frequency, *, ignore_timestamp=False):
+    return Settings({'publish_frequency': frequency, 'ignore_timestamp': ignore_timestamp})
+
+
+EACH = rule_of(0.0)
 LATCHED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 FIRST = 1000
 """Seconds of the first stamp of a test, after those of messages to connect."""
@@ -137,6 +148,7 @@ def arm(following):
     """Return an arm that is connected, all joints of which are known."""
     following.start(unreported=UnreportedJoints.ZERO)
     following.connect(joints=('turn', 'lift', 'grip'))
+    following.spin(2.0 * INITIAL_PERIOD_S)  # until all frames are published once more
     return following
 
 
@@ -144,7 +156,7 @@ def arm(following):
 def make_slow_arm(following):
     """Makes an arm with a highest rate; ``slow_arm(frequency)``."""
     def start(frequency):
-        following.start(rule=Rule(frequency, False))
+        following.start(rule=rule_of(frequency))
         following.connect()
         return following
     return start
@@ -171,7 +183,7 @@ def test_each_transform_has_its_own_last_stamp(arm):
 
 
 def test_each_message_can_be_published_whatever_its_stamp_is(following):
-    following.start(rule=Rule(20.0, True))
+    following.start(rule=rule_of(20.0, ignore_timestamp=True))
     following.connect()
     sent = [(FIRST + after, {'turn': 0.5}) for after in (0, 0, -100, 2)]
     assert [sec - FIRST for sec, _ in following.published(*sent)] == [0, 0, -100, 2]
@@ -216,10 +228,10 @@ def test_a_joint_that_no_message_has_named_moves_nothing(following):
 def test_joints_that_stay_unreported_are_counted_once_and_then_that_none_is(following, capfd):
     following.start()
     following.connect()
-    following.wait(lambda: following.states.thread.unreported.number)
-    assert following.states.thread.unreported == (2, 'grip', ['/joint_states'])
+    following.wait(lambda: following.states.unreported.number)
+    assert following.states.unreported == (2, 'grip', ['/joint_states'])
     following.published((FIRST, {'lift': 0.0, 'grip': 0.0}), (FIRST + 1, {'turn': 0.0}))
-    assert following.states.thread.unreported.number == 0
+    assert following.states.unreported.number == 0
     log = capfd.readouterr().err
     assert log.count('2 joints have not been reported yet, for example "grip"') == 1
     assert log.count('all joints have been reported now') == 1
@@ -256,10 +268,10 @@ def test_topics_have_few_of_many_messages_and_the_last_one_again_at_rest(arm):
 
 
 def test_what_was_created_for_it_is_destroyed_with_it(following):
-    following.start(rule=Rule(20.0, False))
+    following.start(rule=rule_of(20.0))
     following.states.end()
     assert not list(following.node.subscriptions)
-    assert not following.states.thread._thread.is_alive()
+    assert not following.states._thread.is_alive()
 
 
 def test_it_ends_with_the_node(make_node):
@@ -267,9 +279,9 @@ def test_it_ends_with_the_node(make_node):
     following = Following(node, make_node('listener'), None)
     following.start()
     node.destroy_node()
-    following.states.thread._wake()
-    following.states.thread._thread.join(20.0)
-    assert not following.states.thread._thread.is_alive()
+    following.states._wake()
+    following.states._thread.join(20.0)
+    assert not following.states._thread.is_alive()
 
 
 # A highest rate
@@ -306,7 +318,7 @@ def test_positions_can_be_taken_before_the_end_of_a_period(slow_arm, finish):
     arm.send(FIRST, {'turn': 0.5})
 
     async def catch_up():
-        await arm.states.thread.catch_up()
+        await arm.states.catch_up()
 
     def is_taken():
         finish(arm._executor, catch_up)
@@ -328,7 +340,7 @@ def test_more_messages_than_a_subscription_holds_are_taken_in_a_long_period(slow
 
 def test_simulated_time_that_has_not_begun_holds_nothing_up(following):
     following.node.set_parameters([Parameter('use_sim_time', value=True)])
-    following.start(rule=Rule(0.001, False))
+    following.start(rule=rule_of(0.001))
     following.connect()
     assert following.published((FIRST, {'turn': 0.5}), (FIRST + 1, {'turn': 0.5}))
 
@@ -343,7 +355,7 @@ def test_a_period_is_one_of_simulated_time(following):
 
     following.wait(lambda: is_at(10_000))
     # A period of 1000 seconds.
-    following.start(rule=Rule(0.001, False))
+    following.start(rule=rule_of(0.001))
     following.connect()
     following.send(FIRST, {'turn': 0.5})
     following.spin(0.2)
@@ -361,7 +373,7 @@ def make_two_arms(following):
         following.start(TWO_ARMS, topics=TWO_TOPICS)
         for topic in ('/a/j', '/b/j'):
             following.connect(topic)
-        following.states.follow(following.frames, TWO_TOPICS, Rule(frequency, False))
+        following.states.follow(following.frames, TWO_TOPICS, rule_of(frequency))
         following.spin(0.1)
         return following
     return start
@@ -419,8 +431,8 @@ def test_too_many_messages_of_one_robot_leave_time_for_another(two_arms):
 
 def test_an_unreported_joint_is_named_with_the_topics_that_can_name_it(following):
     following.start(TWO_ARMS, topics=TWO_TOPICS)
-    following.wait(lambda: following.states.thread.unreported.number)
-    assert following.states.thread.unreported == (6, 'a/turn', ['/a/j'])
+    following.wait(lambda: following.states.unreported.number)
+    assert following.states.unreported == (6, 'a/turn', ['/a/j'])
 
 
 def test_topics_come_and_go_with_the_frames(following):

@@ -11,9 +11,8 @@ from rclpy.qos import DurabilityPolicy, qos_profile_sensor_data, ReliabilityPoli
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.ros.given_parameters import settings_from_node
-from sdf_pose_bridge.ros.joint_state_thread import Rule
 from sdf_pose_bridge.ros.joint_states import JointStates
-from sdf_pose_bridge.ros.parameters import SettingsError
+from sdf_pose_bridge.ros.parameters import Settings, SettingsError
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.ros.qos_overrides import sentences_about_overrides
@@ -32,7 +31,7 @@ def qualities(node):
         Publishers(node), tree, JointPositions(scene, tree.moving.dofs), {})
     states = JointStates(
         node, frames.moving, JointStateTopics({'joint_states': ''}),
-        Rule(highest_hz=0.0, ignores_stamps=False))
+        Settings({'publish_frequency': 0.0, 'ignore_timestamp': False}))
     found = {
         each.topic_name: each.qos_profile for each in [*node.publishers, *node.subscriptions]}
     states.end()

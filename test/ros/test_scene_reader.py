@@ -16,7 +16,9 @@ from sdf_pose_bridge.errors import (
     SdfError,
 )
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.tf.loaded_scene import LoadRequest, may_pass
+from sdf_pose_bridge.tf.frame_setting import frame_change_from_request
+from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadRequest, may_pass
+from sdf_pose_bridge.tf.visual_markers import markers_from_text
 
 LINK = """<link name="l"><pose>1 0 0 0 0 0</pose>
   <visual name="v"><geometry><box/></geometry></visual></link>"""
@@ -34,18 +36,27 @@ def make_request(path):
     return LoadRequest(str(path), '')
 
 
+def change_of(loaded):
+    """Return the call that finds a change."""
+    return (
+        frame_change_from_request, loaded.request, fingerprint_of_scene(loaded.scene), 'l',
+        Pose(2.0), '', loaded.joint_positions)
+
+
 def test_a_scene_comes_from_another_process(reader, request_of_file, path):
     loaded = reader.loaded_scene(request_of_file)
     assert loaded.path == path
     assert loaded.lookup.pose('l').pose == Pose(1.0)
-    assert reader._result(request_of_file, os.getpid) != os.getpid()
+    assert reader.result(request_of_file, os.getpid) != os.getpid()
 
 
 def test_markers_and_changes_come_from_it_too(reader, request_of_file):
     loaded = reader.loaded_scene(request_of_file)
-    (marker,), _ = reader.markers(loaded)
+    fingerprint = fingerprint_of_scene(loaded.scene)
+    (marker,), _ = reader.result(
+        loaded.request, markers_from_text, loaded.text, loaded.path, loaded.request, fingerprint)
     assert marker.form.type == 'CUBE'
-    change = reader.frame_change(loaded, 'l', Pose(2.0), '')
+    change = reader.result(loaded.request, *change_of(loaded))
     assert '+<sdf' in change.diff or '<pose>2 0 0 0 0 0' in change.diff
     assert change.file.new_text.decode() == model_file(LINK).replace('1 0 0', '2 0 0')
 
@@ -54,7 +65,7 @@ def test_a_change_of_a_file_that_has_changed_is_refused(reader, request_of_file,
     loaded = reader.loaded_scene(request_of_file)
     path.write_text(model_file(LINK.replace('1 0 0', '1 2 0')), encoding='utf-8')
     with pytest.raises(SdfError, match='the file has changed since it was read'):
-        reader.frame_change(loaded, 'l', Pose(2.0), '')
+        reader.result(loaded.request, *change_of(loaded))
 
 
 def test_all_errors_of_a_file_arrive(reader, path, request_of_file):
@@ -73,7 +84,7 @@ def test_a_uri_without_a_file_is_an_error(reader):
 
 def test_a_file_that_needs_too_much_is_an_error(reader, request_of_file):
     with pytest.raises(LimitError) as caught:
-        reader._result(request_of_file, bytearray, 2_000_000_000)
+        reader.result(request_of_file, bytearray, 2_000_000_000)
     assert str(caught.value) == (
         f'{request_of_file.sdf_file}: LIMIT: the file needs more than 700 MB of memory to be read')
     assert not may_pass(caught.value)
@@ -81,14 +92,14 @@ def test_a_file_that_needs_too_much_is_an_error(reader, request_of_file):
 
 def test_a_process_that_is_killed_is_an_error_that_passes(reader, request_of_file):
     with pytest.raises(PassingReadError, match='has ended by signal 9') as caught:
-        reader._result(request_of_file, signal.raise_signal, signal.SIGKILL)
+        reader.result(request_of_file, signal.raise_signal, signal.SIGKILL)
     assert may_pass(caught.value)
     assert reader.loaded_scene(request_of_file)
 
 
 def test_a_process_that_crashes_is_an_error_that_stays(reader, request_of_file):
     with pytest.raises(FileReadError, match='has ended by signal 11') as caught:
-        reader._result(request_of_file, signal.raise_signal, signal.SIGSEGV)
+        reader.result(request_of_file, signal.raise_signal, signal.SIGSEGV)
     assert not may_pass(caught.value)
 
 

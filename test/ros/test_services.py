@@ -34,26 +34,31 @@ from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge_interfaces.srv import ConvertPoses, ConvertRotation, LookupPose, SetPose
 
 
+def answered(answer, request, response):
+    return never_raising(answer, get_logger('bridge').error)(request, response)
+
+
 def convert_rotation(given=0, rpy=(0.0, 0.0, 0.0), quat_xyzw=(0.0, 0.0, 0.0, 1.0), degrees=False):
     request = ConvertRotation.Request(given=given, degrees=degrees)
     request.rpy.x, request.rpy.y, request.rpy.z = rpy
     quat = request.quaternion
     quat.x, quat.y, quat.z, quat.w = quat_xyzw
-    return answer_to_convert_rotation(request, ConvertRotation.Response())
+    return answered(answer_to_convert_rotation, request, ConvertRotation.Response())
 
 
 def convert_poses(values, from_format='sdf_rpy', to_format='sdf_quat_xyzw'):
     request = ConvertPoses.Request(from_format=from_format, to_format=to_format)
     request.values = array.array('d', values)
-    return answer_to_convert_poses(request, ConvertPoses.Response())
+    return answered(answer_to_convert_poses, request, ConvertPoses.Response())
 
 
 def look_up(frame, relative_to=''):
     scene = load_text(world_file(
         '<model name="m"><pose>0.1 -1e-300 1e300 0 0 3</pose><link name="l"/></model>'))
-    return answer_to_lookup_pose(
-        LookupPose.Request(frame=frame, relative_to=relative_to), LookupPose.Response(),
-        PoseLookup(scene, tf_tree_from_scene(scene)), Clock())
+    lookup = PoseLookup(scene, tf_tree_from_scene(scene))
+    return answered(
+        lambda request, response: answer_to_lookup_pose(request, response, lookup, Clock()),
+        LookupPose.Request(frame=frame, relative_to=relative_to), LookupPose.Response())
 
 
 @pytest.mark.parametrize(('request_fields', 'word'), [
@@ -133,8 +138,7 @@ def test_a_defect_is_answered_and_logged(capfd):
         msg = 'the moon is full'
         raise KeyError(msg)
 
-    callback = never_raising(defective, get_logger('bridge').error)
-    response = callback(ConvertPoses.Request(), ConvertPoses.Response())
+    response = answered(defective, ConvertPoses.Request(), ConvertPoses.Response())
     assert not response.success
     assert response.message.startswith('internal error')
     assert 'the moon is full' in response.message

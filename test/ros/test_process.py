@@ -8,7 +8,7 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from sdf_pose_bridge.ros.given_parameters import settings_from_node
 from sdf_pose_bridge.ros.parameters import DECLARATIONS
-from sdf_pose_bridge.ros.programs import PROGRAMS, ROBOT_STATE_PUBLISHER
+from sdf_pose_bridge.ros.process import PROGRAMS, ROBOT_STATE_PUBLISHER
 
 
 @pytest.mark.parametrize('program', PROGRAMS)
