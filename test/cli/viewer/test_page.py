@@ -41,7 +41,7 @@ def set_switches(page, value, *labels):
     for switch in list(page._server.gui._gui_input_handle_from_uuid.values()):
         if switch.label in labels:
             switch.value = value
-    while not page._events._actions.empty() or any(
+    while not page._events.empty() or any(
             (label in page._hidden) is value for label in labels):
         page.act(0.1)
 
