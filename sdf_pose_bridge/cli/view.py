@@ -36,10 +36,9 @@ from sdf_pose_bridge.cli.printing import (
 )
 from sdf_pose_bridge.cli.viewer import LIBRARIES
 from sdf_pose_bridge.errors import FileReadError, LimitError, Place, SdfError
-from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.limited_process import LimitedProcess, ProcessEndedError
 from sdf_pose_bridge.process_limits import FOR_FILES, LimitExceededError
-from sdf_pose_bridge.scene.pose_setting import Measure, pose_change, PoseChange
+from sdf_pose_bridge.scene.pose_setting import pose_change
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.file_watcher import FileWatcher
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
@@ -109,7 +108,7 @@ def _shown(viewer: ModuleType, process: LimitedProcess, options: argparse.Namesp
         viewer.ShownScene(scene, tf_options_from_arguments(options)),
         0 if options.output else options.port, Units(options.length_unit, options.angle_unit),
         viewer.MeshReader(resource_finder(options.resource_paths, os.environ), process),
-        partial(_set_pose, process, options) if options.edit else None,
+        partial(pose_change, load=partial(_scene, process, options)) if options.edit else None,
         # A page in a file has no switches.
         viewer.HIDDEN_AT_FIRST - ({'all names'} if options.output else set()))
     try:
@@ -198,17 +197,6 @@ def _follow(
                 page.show(viewer.ShownScene(scene, tf_options_from_arguments(options)))
             except SdfError as error:
                 page.show_errors(map(str, error.errors))
-
-
-def _set_pose(
-    process: LimitedProcess, options: argparse.Namespace, scene: Scene, element: int, asked: Pose,
-    measure: Measure, *, dry_run: bool,
-) -> PoseChange:
-    """Find a change of the file as :func:`pose_change` does, and write it unless it is a trial."""
-    change = pose_change(scene, element, asked, measure, partial(_scene, process, options))
-    if not dry_run:
-        change.file.write()
-    return change
 
 
 def _scene(

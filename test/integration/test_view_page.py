@@ -281,6 +281,7 @@ def strip_label(text):
 def drag(page):
     """Drag the gizmo of the frame with the hostile name upwards, 11 pixels beside its arrow."""
     select(page, HOSTILE)
+    page.wait_for("document.querySelector('.strip').innerText.includes('in the file')")
     # Nothing says when the gizmo is drawn; until then there is nothing to drag.
     page.run('new Promise(drawn => requestAnimationFrame(() => requestIdleCallback(drawn)))')
     points = (point_on_screen(page, (1.0, 0.0, height)) for height in (0.0, 0.02, 0.05, 0.08, 0.1))

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 import viser
 
-from sdf_pose_bridge.cli.printing import kind_labels_of, Unit
+from sdf_pose_bridge.cli.printing import Unit
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
 from sdf_pose_bridge.cli.viewer.shown_scene import PosedScene, ShownScene
 from sdf_pose_bridge.cli.viewer.surfaces import (
@@ -29,7 +29,7 @@ from sdf_pose_bridge.cli.viewer.view_point import (
     grid_spacing_m,
     home_view,
 )
-from sdf_pose_bridge.geometry.poses import Pose, PoseArray
+from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.names import printable, SEPARATOR, shortened
 from sdf_pose_bridge.scene.scene import Scene
@@ -74,7 +74,7 @@ class Drawing:
         self, nodes: viser.SceneApi, name: str, meshes: MeshReader, shown: ShownScene,
         posed: PosedScene, hidden: set[str], hidden_ids: set[str], select: Callable[[int], None],
     ) -> None:
-        scene, tree = posed
+        scene, tree, labels = posed
         self._nodes, self._name, self._select = nodes, name, select
         self._node = nodes.add_frame(name, show_axes=False)
         self._has_all_lines = 'all lines to parents' not in hidden
@@ -85,7 +85,7 @@ class Drawing:
         elements = np.where(
             tree.elements < 0, tree.elements[np.maximum(tree.parents, 0)], tree.elements)
         self.frames = np.array([
-            frame for frame, label in enumerate(kind_labels_of(scene, tree))
+            frame for frame, label in enumerate(labels)
             if label not in hidden and is_shown[elements[frame]]
             and not is_hidden[frame]], int)
         """The frames that are drawn, indices into the TF tree."""
@@ -135,7 +135,6 @@ class Drawing:
             f'{name}/frames', *_places(tree.poses[self.frames]), axes_length=length_m,
             axes_radius=0.035 * length_m)
         self._select_by_click(self._axes, self.frames)
-        self._distances: dict[str, Floats] = {}
         self._copies = [
             (self._add_surface(number, surface, posed), surface.elements)
             for number, surface in enumerate(self._surfaces)]
@@ -144,58 +143,44 @@ class Drawing:
         """Remove the nodes."""
         self._node.remove()
 
-    def place(self, posed: PosedScene) -> None:
-        """Move the drawing to other positions of joints."""
-        scene, tree = posed
+    def show(self, posed: PosedScene, frame: int, reference: int, unit: Unit) -> str:
+        """
+        Show other positions of joints, larger axes for a frame, and lines to its ancestors.
+
+        :param frame: its index, or -1 for none.
+        :param reference: index of another one, to which there is a line; ``ROOT_IS_PARENT`` for
+            no line.
+        :param unit: the unit of the length of this line.
+        :return: in JSON, for each name of a frame or a missing mesh, and for the length of the
+            line, its text, whether names do not cover it, and x, y and z of the point that it is
+            right of and below.
+        """
+        scene, tree, _ = posed
         self._axes.batched_wxyzs, self._axes.batched_positions = _places(tree.poses[self.frames])
         for copies, elements in self._copies:
             copies.batched_wxyzs, copies.batched_positions = _places(scene.poses[elements])
-
-    def mark(
-        self, tree: TfTree, frame: int, pose: Pose | None, reference: Pose | None, unit: Unit,
-    ) -> None:
-        """
-        Show larger axes for a frame, and lines to its ancestors, or all lines if they are on.
-
-        :param frame: its index, or -1 for none.
-        :param pose: the pose of the axes in the root frame.
-        :param reference: the pose of a frame to which there is a line.
-        :param unit: the unit of the length of this line.
-        """
-        ends = np.array([end[:3] for end in (reference, pose) if end is not None])
-        is_measured = len(ends) == 2
-        self._measured.points = ends[None] if is_measured else np.zeros((0, 2, 3))
-        self._distances = {
-            f'{unit.factor * math.dist(*ends):.{unit.digits}f} {unit.name}': ends.mean(axis=0),
-        } if is_measured else {}
-        self._marker.visible = pose is not None
-        if pose is not None:
-            self._marker.position, self._marker.wxyz = pose[:3], (pose.qw, *pose[3:6])
         self._lines.points = _lines(
             tree, self.frames if self._has_all_lines else _ancestry(tree, frame))
-
-    def labels(self, posed: PosedScene, frame: int, pose: Pose | None) -> str:
-        """
-        Return names of frames, of missing meshes, and a distance.
-
-        :param frame: index of a frame whose name is always shown, or -1.
-        :param pose: the pose of this frame in the root frame, if it is not the one in the scene.
-        :return: in JSON, for each its text, whether names do not cover it, and x, y and z of the
-            point that it is right of and below.
-        """
-        scene, tree = posed
-        frames = self.frames[:MOST_NAMES].tolist() if self._has_all_names else []
-        if frame >= 0 and frame not in frames:
-            frames.append(frame)
-        origins = tree.poses[:, :3].copy()
-        if pose is not None:
-            origins[frame] = pose[:3]
-        return json.dumps([
-            *([text, True, *point.tolist()] for text, point in self._distances.items()),
-            *([name, True, *scene.poses[element, :3].tolist()]
-              for element, name in self._missing.items()),
-            *([printable(shortened(tree.frame_ids[index].rpartition('/')[2])), index == frame,
-               *origins[index].tolist()] for index in frames)])
+        labels: list[tuple[object, ...]] = []
+        measured = np.zeros((0, 2, 3))
+        self._marker.visible = frame >= 0
+        if frame >= 0:
+            pose, origin = posed.pose_of(frame), posed.pose_of(reference)
+            self._marker.position, self._marker.wxyz = pose[:3], (pose.qw, *pose[3:6])
+            if reference != ROOT_IS_PARENT:
+                measured = np.array([[origin[:3], pose[:3]]])
+                length_m = math.dist(origin[:3], pose[:3])
+                labels.append((f'{unit.factor * length_m:.{unit.digits}f} {unit.name}', True,
+                               *measured[0].mean(axis=0).tolist()))
+        self._measured.points = measured
+        labels += [(name, True, *scene.poses[element, :3].tolist())
+                   for element, name in self._missing.items()]
+        named = self.frames[:MOST_NAMES].tolist() if self._has_all_names else []
+        if frame >= 0 and frame not in named:
+            named.append(frame)
+        return json.dumps(labels + [
+            (printable(shortened(tree.frame_ids[index].rpartition('/')[2])), index == frame,
+             *tree.poses[index, :3].tolist()) for index in named])
 
     def boxes(self, posed: PosedScene, is_in: NDArray[np.bool_]) -> Floats:
         """
@@ -272,7 +257,7 @@ def _lines(tree: TfTree, shown: NDArray[np.intp]) -> Floats:
 
 def _names_of_bodies(posed: PosedScene, surface: Surface) -> list[str]:
     """Return the names of the copies of a surface: the frame of each, then the body in it."""
-    scene, tree = posed
+    scene, tree, _ = posed
     ids = (*tree.frame_ids, tree.root_frame)
     return [printable(
         f'{ids[frame]}, {surface.kind.label} {scene.names[element].rpartition(SEPARATOR)[2]}')

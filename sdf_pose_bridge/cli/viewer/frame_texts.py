@@ -11,8 +11,9 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from sdf_pose_bridge.cli.printing import kind_labels_of, POSE_LABELS, Units
+from sdf_pose_bridge.cli.printing import POSE_LABELS, Units
 from sdf_pose_bridge.cli.viewer.browser_script import html_of_copy_button
+from sdf_pose_bridge.cli.viewer.shown_scene import PosedScene
 from sdf_pose_bridge.geometry.formats import converted_poses
 from sdf_pose_bridge.geometry.poses import Pose, relative_pose
 from sdf_pose_bridge.names import printable, quoted_names, SEPARATOR
@@ -36,7 +37,7 @@ def escaped(text: str) -> str:
     return html.escape(printable(text))
 
 
-def html_of_frame(scene: Scene, tree: TfTree, frame: int, reference: int, units: Units) -> str:
+def html_of_frame(posed: PosedScene, frame: int, reference: int, units: Units) -> str:
     """
     Describe a frame.
 
@@ -46,24 +47,23 @@ def html_of_frame(scene: Scene, tree: TfTree, frame: int, reference: int, units:
     :return: names, place in the file, poses in the root, the parent and the other frame, and the
         last pose in formats to copy.
     """
+    scene, tree, labels = posed
     element, parent = int(tree.elements[frame]), int(tree.parents[frame])
-    kind = kind_labels_of(scene, tree)[frame]
-    rows = [(tree.frame_ids[frame], f'<b>{escaped(tree.frame_ids[frame])}</b> {kind}')]
+    rows = [(tree.frame_ids[frame], f'<b>{escaped(tree.frame_ids[frame])}</b> {labels[frame]}')]
     if element >= 0:
         rows += [(text, escaped(text)) for text in (
             scene.names[element], str(scene.place(element)))]
     lines = [html_of_copy_button(printable(text)) + row for text, row in rows]
-    # The last entries are the root frame, at the index of the root as a parent.
+    # The last entry is the root frame, at the index of the root as a parent.
     assert ROOT_IS_PARENT == -1
     ids = (*tree.frame_ids, tree.root_frame)
-    poses = [*(Pose(*pose) for pose in tree.poses.tolist()), Pose()]
     for other in dict.fromkeys((reference, ROOT_IS_PARENT, parent)):
         if other not in (NO_PARENT, frame):
-            texts = units.texts(relative_pose(poses[other], poses[frame]))
+            texts = units.texts(relative_pose(posed.pose_of(other), posed.pose_of(frame)))
             lines.append(
                 f'in <b>{escaped(ids[other])}</b><br>xyz {" ".join(texts[:3])} {units.length.name}'
                 f'<br>rpy {" ".join(texts[3:])} {units.angle.name}')
-    pose = relative_pose(poses[reference], poses[frame])
+    pose = relative_pose(posed.pose_of(reference), posed.pose_of(frame))
     # Smaller differences are rounding errors. Adding zero removes negative zeros.
     rpy, quat, franka = (
         (converted_poses([pose], 'sdf_quat_xyzw', name)[0].round(12) + 0.0).tolist()
@@ -101,10 +101,12 @@ def _relative_to(scene: Scene, tree: TfTree, frame: int, reference: int) -> str:
     return f' relative_to={quoteattr(name.removeprefix(scope))}'
 
 
-def html_of_place(frame_id: str, reference_id: str, pose: Pose, units: Units) -> str:
+def html_of_place(posed: PosedScene, frame: int, reference: int, units: Units) -> str:
     """Write the pose of a frame in another one in a line."""
-    texts = units.texts(pose)
-    return (f'<b>{escaped(frame_id)}</b> in {escaped(reference_id)}: xyz {" ".join(texts[:3])} '
+    tree = posed.tree
+    texts = units.texts(relative_pose(posed.pose_of(reference), posed.pose_of(frame)))
+    return (f'<b>{escaped(tree.frame_ids[frame])}</b> in '
+            f'{escaped((*tree.frame_ids, tree.root_frame)[reference])}: xyz {" ".join(texts[:3])} '
             f'{units.length.name}, rpy {" ".join(texts[3:])} {units.angle.name}')
 
 

@@ -4,7 +4,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -26,10 +27,18 @@ class PosedScene(NamedTuple):
 
     scene: Scene
     tree: TfTree
+    labels: Sequence[str]
+    """The label of the kind of each frame."""
 
     def pose_of(self, frame: int) -> Pose:
         """Return the pose of a frame in the root frame, for which ``ROOT_IS_PARENT`` stands."""
         return Pose() if frame == ROOT_IS_PARENT else Pose(*self.tree.poses[frame].tolist())
+
+    def with_pose(self, frame: int, pose: Pose) -> PosedScene:
+        """Return the same with a frame at another pose; other frames stay."""
+        poses = self.tree.poses.copy()
+        poses[frame] = pose
+        return self._replace(tree=replace(self.tree, poses=poses))
 
 
 class ShownScene:
@@ -49,7 +58,8 @@ class ShownScene:
         # The outermost element around each, below the world or the implicit root.
         self._tops = ends_from_pointers(
             np.where(loaded.parents[loaded.parents] < 0, -1, loaded.parents))
-        self.kinds: tuple[str, ...] = tuple(dict.fromkeys(kind_labels_of(loaded, tree)))
+        self._labels = kind_labels_of(loaded, tree)
+        self.kinds = tuple(dict.fromkeys(self._labels))
         """The labels of the kinds of its frames."""
         self.joints: dict[str, JointRange] = {
             name: range_of_dof(dof)
@@ -81,4 +91,4 @@ class ShownScene:
         :param scene: the same scene with other poses.
         """
         scene = scene_at_positions(scene or self.loaded, positions)
-        return PosedScene(scene, tf_tree_from_scene(scene, self._options))
+        return PosedScene(scene, tf_tree_from_scene(scene, self._options), self._labels)

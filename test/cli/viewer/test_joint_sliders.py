@@ -3,7 +3,6 @@
 """How far sliders move joints; integration/test_view_page.py moves one in a browser."""
 
 import math
-import time
 
 import pytest
 
@@ -51,17 +50,13 @@ def gui():
 
 def test_all_joints_go_home_and_to_the_middle(gui):
     ranges = {'m/j': JointRange(False, -3.0, -1.0), 'm/k': JointRange(True, 0.0, 1.0)}
-    events = Events()
-    joints = JointSliders(gui, ranges, {'m/k': 0.5, 'gone': 1.0}, Units(angle=DEGREES), events)
+    joints = JointSliders(
+        gui, ranges, {'m/k': 0.5, 'gone': 1.0}, Units(angle=DEGREES), Events())
     assert joints.positions == {'m/j': -1.0, 'm/k': 0.5}
-    buttons, _, first, second = gui._gui_input_handle_from_uuid.values()
+    first, second = joints._sliders.values()
     assert (first.label, second.label) == ('j', 'k')
-    for value, expected in (('middle', [-2.0, 0.5]), ('home', [-1.0, 0.0])):
-        buttons.value = value
-        end = time.monotonic() + 20.0
-        while list(joints.positions.values()) != expected and time.monotonic() < end:
-            for action in events.asked(0.1):
-                action()
+    for place, expected in (('middle', [-2.0, 0.5]), ('home', [-1.0, 0.0])):
+        joints._move_all(place)
         assert list(joints.positions.values()) == expected
         assert second.value == pytest.approx(math.degrees(expected[1]))
 
@@ -86,9 +81,9 @@ def test_each_joint_moves_through_its_range_once(gui, monkeypatch):
 def test_wheel_goes_round(gui, end):
     joints = JointSliders(
         gui, {'m/j': joint_range('revolute')}, {}, Units(), Events())
-    (slider,) = joints._sliders
+    (slider,) = joints._sliders.values()
     slider.value = end
-    joints._take_position('m/j', slider, 1.0, is_turn=True)
-    assert joints.positions['m/j'] == slider.value == pytest.approx(-end, abs=0.01)
-    joints._take_position('m/j', slider, 1.0, is_turn=True)
+    joint_sliders._turn_on(slider)
+    assert joints.positions['m/j'] == pytest.approx(slider.value) == pytest.approx(-end, abs=0.01)
+    joint_sliders._turn_on(slider)
     assert slider.value == pytest.approx(-end, abs=0.01)

@@ -51,6 +51,11 @@ def nodes(page, *names):
     return [page._server.scene.get_handle_by_name(f'{prefix}/{name}') for name in names]
 
 
+def select(page, frame):
+    page._answer(f'select {page._posed.tree.frame_ids.index(frame)}')
+    page._refresh()
+
+
 def labels(page):
     (data,) = re.findall('data-labels="([^"]*)"', page._labels.content)
     return json.loads(html.unescape(data))
@@ -71,7 +76,7 @@ def test_name_of_a_mesh_stands_beside_the_box_that_is_drawn_for_it(page_of):
 def test_name_moves_with_its_frame_when_the_file_is_read_again(page_of):
     sensor = '<sensor name="s" type="imu"><pose>0 0 {} 0 0 0</pose></sensor>'
     page = page_of(sensor.format(0))
-    page._selected.select(page._posed.tree.frame_ids.index('l/s'))
+    select(page, 'l/s')
     page.show(page_of(sensor.format(0.1))._shown)
     assert labels(page) == [['s', True, 0.0, 0.0, 0.1]]
 
@@ -86,7 +91,7 @@ def test_what_is_switched_off_is_not_drawn(page_of):
 def test_drawing_shares_no_name_with_the_one_before(page_of):
     page = page_of('<visual name="v"><geometry><box/></geometry></visual>')
     (before,) = nodes(page, 'visuals/0')
-    page.show(page._shown)
+    set_switches(page, False, 'grid')
     (after,) = nodes(page, 'visuals/0')
     assert before.name != after.name
     assert page._server.scene.get_handle_by_name(before.name) is None
@@ -100,23 +105,21 @@ def test_joints_move_on_while_the_page_acts(page_of):
 
 
 def test_number_that_is_typed_while_a_file_is_read_stays(page_of):
-    page = page_of('', set_pose=lambda scene, *_, **__: PoseChange(
+    page = page_of('', find_change=lambda scene, *_: PoseChange(
         FileChange(scene.path, b'', 'utf-8', 0, 0, b''), 1, scene))
-    page._selected.select(page._posed.tree.frame_ids.index('l'))
+    select(page, 'l')
     page._edit._numbers[0].value = 0.5
     page.show(page._shown)
-    page._events.put(page._edit._take_numbers)
     page.act(0.0)
     assert page._edit.pose.x == pytest.approx(0.5)
 
 
 def test_line_joins_the_frames_that_are_measured(page_of):
     page = page_of('<sensor name="s" type="imu"><pose>1 2 3 0 0 0</pose></sensor>')
-    frames = page._posed.tree.frame_ids
-    page._selected.select(frames.index('l'))
+    select(page, 'l')
     assert page._drawing._measured.points.shape == (0, 2, 3)
     page._selected._measure_from_here()
-    page._selected.select(frames.index('l/s'))
+    select(page, 'l/s')
     assert page._drawing._measured.points.tolist() == [[[0, 0, 0], [1, 2, 3]]]
     assert labels(page)[0] == ['3.7417 m', True, 0.5, 1.0, 1.5]
 

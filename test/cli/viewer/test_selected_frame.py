@@ -7,12 +7,10 @@ import pytest
 pytest.importorskip('viser', reason='needs viser')
 import viser
 
-from sdf_pose_bridge.cli.printing import Units
 from sdf_pose_bridge.cli.viewer import selected_frame
 from sdf_pose_bridge.cli.viewer.selected_frame import SelectedFrame
 from sdf_pose_bridge.cli.viewer.server import Events
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
-from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfOptions
@@ -25,24 +23,22 @@ def posed_scene(*frames):
     return ShownScene(scene, TfOptions()).at({})
 
 
-POSED = posed_scene('a', 'b', 'c')
-
-
 @pytest.fixture
 def selected():
     server = viser.ViserServer('127.0.0.1', 0, verbose=False)
-    place = server.gui.add_folder(None)
-    yield SelectedFrame(server.gui, place, POSED, Events(), lambda: None)
+    selected = SelectedFrame(server.gui, server.gui.add_folder(''), Events())
+    selected.list_frames(posed_scene('a', 'b', 'c'))
+    yield selected
     server.stop()
 
 
 def test_frame_that_is_gone_is_not_selected(selected):
-    selected.select(3)
+    selected.answer('select', 3)
     assert selected.frame == -1
 
 
 def test_selected_frame_stays_where_others_are_listed(selected):
-    selected.select(1)
+    selected.answer('select', 1)
     selected.list_frames(posed_scene('b'))
     assert selected.frame == 0
     selected.list_frames(posed_scene('a'))
@@ -55,11 +51,9 @@ def test_more_frames_than_rows(selected, monkeypatch):
     assert '2 more, to be found by the search' in selected._rows.content
 
 
-def test_description_is_relative_to_the_frame_measured_from(selected):
+def test_frame_that_is_measured_from_is_the_reference(selected):
     assert selected.reference == ROOT_IS_PARENT
-    selected.select(1)
+    selected.answer('select', 1)
     selected._measure_from_here()
-    selected.select(2)
+    selected.answer('select', 2)
     assert (selected.frame, selected.reference) == (2, 1)
-    selected.describe(POSED, Pose(z=0.5), Units())
-    assert 'in <b>b</b>' in selected._description.content
