@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 import contextlib
 from functools import partial
 import importlib
@@ -97,39 +97,29 @@ def run(options: argparse.Namespace) -> int:
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     # It is made before the server starts threads.
     with contextlib.closing(LimitedProcess()) as process:
-        return _shown(viewer, process, options)
-
-
-def _shown(viewer: ModuleType, process: LimitedProcess, options: argparse.Namespace) -> int:
-    path, read_since_ns = options.files[0], time.time_ns()
-    scene = _scene(process, options)
-    print_problems((), scene.warnings, sys.stderr)
-    page = viewer.Page(
-        viewer.ShownScene(scene, tf_options_from_arguments(options)),
-        0 if options.output else options.port, Units(options.length_unit, options.angle_unit),
-        viewer.MeshReader(resource_finder(options.resource_paths, os.environ), process),
-        partial(pose_change, load=partial(_scene, process, options)) if options.edit else None,
-        # A page in a file has no switches.
-        viewer.HIDDEN_AT_FIRST - ({'all names'} if options.output else set()))
-    try:
-        for line in page.reasons:
-            print(f'sdf_pose view: {line}', file=sys.stderr)
-        if options.output is None:
+        load, read_since_ns = partial(_scene, process, options), time.time_ns()
+        scene = load()
+        print_problems((), scene.warnings, sys.stderr)
+        page = viewer.Page(
+            scene, tf_options_from_arguments(options), 0 if options.output else options.port,
+            Units(options.length_unit, options.angle_unit),
+            viewer.MeshReader(resource_finder(options.resource_paths, os.environ), process),
+            partial(pose_change, load=load) if options.edit else None,
+            # A page in a file has no switches.
+            viewer.HIDDEN_AT_FIRST - ({'all names'} if options.output else set()))
+        with contextlib.closing(page):
+            for line in page.reasons:
+                print(f'sdf_pose view: {line}', file=sys.stderr)
+            if options.output is not None:
+                _write(page.html(options.files[0]), options.output)
+                return 0
             _open(page.address, options.port)
             watcher = FileWatcher()
             # The standard input cannot be read again.
-            watcher.watch(() if path == STANDARD_INPUT else scene.files, read_since_ns)
-            _follow(viewer, page, watcher, process, options)
-        else:
-            html = page.html(path)
-            options.output.write_bytes(
-                _picture(html) if options.output.suffix.lower() == '.png' else html.encode())
-    except OSError as error:
-        msg = f'cannot write {options.output}: {error}'
-        raise CommandError(msg) from error
-    finally:
-        page.close()
-    return 0
+            watcher.watch(
+                () if options.files[0] == STANDARD_INPUT else scene.files, read_since_ns)
+            while True:
+                _follow(page, watcher, load)
 
 
 def _viewer() -> ModuleType:
@@ -180,23 +170,28 @@ def _open(address: str, port: int) -> None:
     webbrowser.open(address)
 
 
-def _follow(
-    viewer: ModuleType, page: Any, watcher: FileWatcher, process: LimitedProcess,
-    options: argparse.Namespace,
-) -> None:
-    """Show the file again whenever it or an included file changes; never returns."""
-    while True:
-        page.act(_PERIOD_S)
-        if watcher.has_changed():
-            # Some editors write in steps, and a file that has just changed would be read twice.
-            page.act(_SETTLING_S)
-            read_since_ns = time.time_ns()
-            try:
-                scene = _scene(process, options)
-                watcher.watch(scene.files, read_since_ns)
-                page.show(viewer.ShownScene(scene, tf_options_from_arguments(options)))
-            except SdfError as error:
-                page.show_errors(map(str, error.errors))
+def _follow(page: Any, watcher: FileWatcher, load: Callable[[], Scene]) -> None:
+    """Process requests, and show the file again if it or an included file has changed."""
+    page.act(_PERIOD_S)
+    if not watcher.has_changed():
+        return
+    # Some editors write in steps, and a file that has just changed would be read twice.
+    page.act(_SETTLING_S)
+    read_since_ns = time.time_ns()
+    try:
+        scene = load()
+        watcher.watch(scene.files, read_since_ns)
+        page.show(scene)
+    except SdfError as error:
+        page.show_errors(map(str, error.errors))
+
+
+def _write(html: str, path: Path) -> None:
+    try:
+        path.write_bytes(_picture(html) if path.suffix.lower() == '.png' else html.encode())
+    except OSError as error:
+        msg = f'cannot write {path}: {error}'
+        raise CommandError(msg) from error
 
 
 def _scene(

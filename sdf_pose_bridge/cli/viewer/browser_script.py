@@ -228,15 +228,3 @@ def page_with_script(page: str, title: str, data: str = '') -> str:
     """
     added = f'<title>{html.escape(title)}</title>{data}{_STYLE}{_SCRIPT}'
     return page.replace(_TITLE, added, 1)
-
-
-def html_of_data(name: str, value: str) -> str:
-    """Return an element that is not seen, from which the script has a value."""
-    return f'<meta data-{name}="{html.escape(value)}">'
-
-
-def html_of_copy_button(text: str) -> str:
-    """Return a button that copies a text."""
-    return (f'<button data-copy="{html.escape(text)}" style="float:right;clear:right;'
-            f'padding:0 4px;margin-left:4px;font-size:0.85em;line-height:1.3;cursor:pointer;'
-            f'border:1px solid;border-radius:3px;opacity:0.6">copy</button>')

@@ -257,12 +257,11 @@ def _lines(tree: TfTree, shown: NDArray[np.intp]) -> Floats:
 
 def _names_of_bodies(posed: PosedScene, surface: Surface) -> list[str]:
     """Return the names of the copies of a surface: the frame of each, then the body in it."""
-    scene, tree, _ = posed
-    ids = (*tree.frame_ids, tree.root_frame)
-    return [printable(
-        f'{ids[frame]}, {surface.kind.label} {scene.names[element].rpartition(SEPARATOR)[2]}')
-        for element, frame in zip(
-            surface.elements, tree.nearest_frames[surface.elements].tolist(), strict=True)]
+    ids, names, frames = posed.ids, posed.scene.names, posed.tree.nearest_frames
+    return [
+        printable(f'{ids[frames[element]]}, {surface.kind.label} '
+                  f'{names[element].rpartition(SEPARATOR)[2]}')
+        for element in surface.elements]
 
 
 def _names_of_missing_meshes(scene: Scene, surfaces: Sequence[Surface]) -> dict[int, str]:

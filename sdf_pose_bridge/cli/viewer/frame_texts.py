@@ -12,12 +12,10 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from sdf_pose_bridge.cli.printing import POSE_LABELS, Units
-from sdf_pose_bridge.cli.viewer.browser_script import html_of_copy_button
 from sdf_pose_bridge.cli.viewer.shown_scene import PosedScene
 from sdf_pose_bridge.geometry.formats import converted_poses
 from sdf_pose_bridge.geometry.poses import Pose, relative_pose
 from sdf_pose_bridge.names import printable, quoted_names, SEPARATOR
-from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.include.merge import is_name_of_proxy
 from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
@@ -37,6 +35,18 @@ def escaped(text: str) -> str:
     return html.escape(printable(text))
 
 
+def html_of_data(name: str, value: str) -> str:
+    """Return an element that is not seen, from which the script has a value."""
+    return f'<meta data-{name}="{html.escape(value)}">'
+
+
+def html_of_copy_button(text: str) -> str:
+    """Return a button that copies a text."""
+    return (f'<button data-copy="{html.escape(text)}" style="float:right;clear:right;'
+            f'padding:0 4px;margin-left:4px;font-size:0.85em;line-height:1.3;cursor:pointer;'
+            f'border:1px solid;border-radius:3px;opacity:0.6">copy</button>')
+
+
 def html_of_frame(posed: PosedScene, frame: int, reference: int, units: Units) -> str:
     """
     Describe a frame.
@@ -48,29 +58,24 @@ def html_of_frame(posed: PosedScene, frame: int, reference: int, units: Units) -
         last pose in formats to copy.
     """
     scene, tree, labels = posed
-    element, parent = int(tree.elements[frame]), int(tree.parents[frame])
-    rows = [(tree.frame_ids[frame], f'<b>{escaped(tree.frame_ids[frame])}</b> {labels[frame]}')]
+    ids, element = posed.ids, int(tree.elements[frame])
+    rows = [(ids[frame], f'<b>{escaped(ids[frame])}</b> {labels[frame]}')]
     if element >= 0:
         rows += [(text, escaped(text)) for text in (
             scene.names[element], str(scene.place(element)))]
     lines = [html_of_copy_button(printable(text)) + row for text, row in rows]
-    # The last entry is the root frame, at the index of the root as a parent.
-    assert ROOT_IS_PARENT == -1
-    ids = (*tree.frame_ids, tree.root_frame)
-    for other in dict.fromkeys((reference, ROOT_IS_PARENT, parent)):
-        if other not in (NO_PARENT, frame):
-            texts = units.texts(relative_pose(posed.pose_of(other), posed.pose_of(frame)))
-            lines.append(
-                f'in <b>{escaped(ids[other])}</b><br>xyz {" ".join(texts[:3])} {units.length.name}'
-                f'<br>rpy {" ".join(texts[3:])} {units.angle.name}')
-    pose = relative_pose(posed.pose_of(reference), posed.pose_of(frame))
+    lines += [
+        f'in <b>{escaped(ids[other])}</b><br>{"<br>".join(_place(posed, other, frame, units))}'
+        for other in dict.fromkeys((reference, ROOT_IS_PARENT, int(tree.parents[frame])))
+        if other not in (NO_PARENT, frame)]
+    pose = posed.pose_in(reference, frame)
     # Smaller differences are rounding errors. Adding zero removes negative zeros.
     rpy, quat, franka = (
         (converted_poses([pose], 'sdf_quat_xyzw', name)[0].round(12) + 0.0).tolist()
         for name in ('sdf_rpy', 'sdf_quat_xyzw', 'franka_matrix'))
     arguments = zip(('x', 'y', 'z', 'qx', 'qy', 'qz', 'qw'), quat, strict=True)
     copied = {
-        'SDF': f'<pose{_relative_to(scene, tree, frame, reference)}>{_text(rpy)}</pose>',
+        'SDF': f'<pose{_relative_to(posed, frame, reference)}>{_text(rpy)}</pose>',
         'static_transform_publisher': ' '.join([
             *(f'--{name} {value!r}' for name, value in arguments),
             '--frame-id', shlex.quote(ids[reference]),
@@ -90,24 +95,28 @@ def _text(values: Sequence[float]) -> str:
     return ' '.join(map(repr, values))
 
 
-def _relative_to(scene: Scene, tree: TfTree, frame: int, reference: int) -> str:
+def _place(posed: PosedScene, reference: int, frame: int, units: Units) -> tuple[str, str]:
+    texts = units.texts(posed.pose_in(reference, frame))
+    return (f'xyz {" ".join(texts[:3])} {units.length.name}',
+            f'rpy {" ".join(texts[3:])} {units.angle.name}')
+
+
+def _relative_to(posed: PosedScene, frame: int, reference: int) -> str:
     """Return the attribute of a pose; empty if SDFormat has no name for the frame."""
-    element = int(tree.elements[reference]) if reference != ROOT_IS_PARENT else -1
+    scene, tree, _ = posed
+    # The root frame, at the end, and an optical frame have no element.
+    element, own = ([*tree.elements.tolist(), -1][index] for index in (reference, frame))
     if element < 0:
         return ''
-    name = scene.names[element]
-    holder = int(scene.parents[tree.elements[frame]]) if tree.elements[frame] >= 0 else -1
+    holder = int(scene.parents[own]) if own >= 0 else -1
     scope = scene.names[holder] + SEPARATOR if holder >= 0 else ''
-    return f' relative_to={quoteattr(name.removeprefix(scope))}'
+    return f' relative_to={quoteattr(scene.names[element].removeprefix(scope))}'
 
 
 def html_of_place(posed: PosedScene, frame: int, reference: int, units: Units) -> str:
     """Write the pose of a frame in another one in a line."""
-    tree = posed.tree
-    texts = units.texts(relative_pose(posed.pose_of(reference), posed.pose_of(frame)))
-    return (f'<b>{escaped(tree.frame_ids[frame])}</b> in '
-            f'{escaped((*tree.frame_ids, tree.root_frame)[reference])}: xyz {" ".join(texts[:3])} '
-            f'{units.length.name}, rpy {" ".join(texts[3:])} {units.angle.name}')
+    return (f'<b>{escaped(posed.ids[frame])}</b> in {escaped(posed.ids[reference])}: '
+            f'{", ".join(_place(posed, reference, frame, units))}')
 
 
 def html_of_moved(old: TfTree, new: TfTree, frame: int) -> str:

@@ -13,9 +13,10 @@ import numpy as np
 import viser
 
 from sdf_pose_bridge.cli.printing import DEGREES, RADIANS, Units
-from sdf_pose_bridge.cli.viewer.browser_script import html_of_data, page_with_script
+from sdf_pose_bridge.cli.viewer.browser_script import page_with_script
 from sdf_pose_bridge.cli.viewer.drawing import Drawing, GROUPS, HIDDEN_AT_FIRST
 from sdf_pose_bridge.cli.viewer.frame_texts import (
+    html_of_data,
     html_of_frame,
     html_of_lines,
     html_of_moved,
@@ -37,6 +38,8 @@ from sdf_pose_bridge.cli.viewer.view_point import (
     view_of_bounds,
 )
 from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.tf.tree import TfOptions
 
 _ANGLES = {unit.name: unit for unit in (RADIANS, DEGREES)}
 
@@ -45,37 +48,40 @@ class Page:
     """
     The page of a file; one thread processes the requests of browsers.
 
-    :param shown: the scene that it shows at first.
+    :param scene: the scene that it shows at first, loaded with its shapes.
+    :param options: the elements that are frames, and the rules for their names.
     :param port: its port, or the next one that is free; 0 for any.
     :param units: the units of poses and sliders at first.
     :param meshes: reads the meshes.
     :param find_change: finds the change of a file for a pose; None if frames cannot be moved.
     :param hidden: groups and kinds of frames that are hidden at first.
+    :raises SdfError: if the scene has no TF tree, or a model to show does not exist.
     """
 
     def __init__(
-        self, shown: ShownScene, port: int, units: Units, meshes: MeshReader,
+        self, scene: Scene, options: TfOptions, port: int, units: Units, meshes: MeshReader,
         find_change: FindChange | None = None, hidden: Iterable[str] = HIDDEN_AT_FIRST,
     ) -> None:
-        title = printable(Path(shown.loaded.path).name)
+        self._options, self._shown = options, ShownScene(scene, options)
+        title = printable(Path(scene.path).name)
         self._server, self.address = server_for_its_owner(port, title)
         gui = self._server.gui
-        self._shown, self._units, self._hidden = shown, units, {*hidden}
+        self._units, self._hidden = units, {*hidden}
         self._events, self._meshes = Events(), meshes
         self._errors: Iterable[str] = ()
         gui.set_panel_label(title)
         self._strip, self._reasons, self._names, self._labels = (
             gui.add_html('') for _ in range(4))
-        gui.add_html(html_of_data('path', str(Path(shown.loaded.path).resolve())))
+        gui.add_html(html_of_data('path', str(Path(scene.path).resolve())))
         gui.add_html('<div class="asked"></div>')
         asked = gui.add_text('asked', '')
         self._events.when(asked.on_update, lambda: self._answer(asked.value.partition(' ')[2]))
         self._edit = None if find_change is None else PoseEdit(
-            self._server, shown.loaded, find_change, self._events)
+            self._server, scene, find_change, self._events)
         folder_of_selected = gui.add_folder('Selected frame', visible=False)
         self._angles = self._add_view_controls()
         self._switches = self._add_switches()
-        self._joints = JointSliders(gui, shown.joints, {}, units, self._events)
+        self._joints = JointSliders(gui, self._shown.joints, {}, units, self._events)
         self._selected = SelectedFrame(gui, folder_of_selected, self._events)
         self._node_names = cycle(('/drawing', '/other drawing'))
         self._move()
@@ -102,12 +108,15 @@ class Page:
         """End the server."""
         self._server.stop()
 
-    def show(self, shown: ShownScene) -> None:
+    def show(self, scene: Scene) -> None:
         """
         Show a scene instead of the one before.
 
         Hidden groups, the selected frame and the positions of joints stay.
+
+        :raises SdfError: as the constructor does.
         """
+        shown = ShownScene(scene, self._options)
         before, self._shown, self._errors = self._shown, shown, ()
         with self._server.atomic():
             if shown.kinds != before.kinds:

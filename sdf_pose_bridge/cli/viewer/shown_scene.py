@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from sdf_pose_bridge.cli.printing import kind_labels_of
 from sdf_pose_bridge.cli.viewer.joint_sliders import JointRange, range_of_dof
 from sdf_pose_bridge.geometry.chains import ends_from_pointers
-from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.poses import Pose, relative_pose
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.joint_motion import JointMotion
 from sdf_pose_bridge.tf.joint_positions import JointPositions, scene_at_positions
@@ -33,6 +33,15 @@ class PosedScene(NamedTuple):
     def pose_of(self, frame: int) -> Pose:
         """Return the pose of a frame in the root frame, for which ``ROOT_IS_PARENT`` stands."""
         return Pose() if frame == ROOT_IS_PARENT else Pose(*self.tree.poses[frame].tolist())
+
+    @property
+    def ids(self) -> Sequence[str]:
+        """The ids of all frames, and of the root frame, at the index ``ROOT_IS_PARENT``."""
+        return *self.tree.frame_ids, self.tree.root_frame
+
+    def pose_in(self, reference: int, frame: int) -> Pose:
+        """Return the pose of a frame in another one."""
+        return relative_pose(self.pose_of(reference), self.pose_of(frame))
 
     def with_pose(self, frame: int, pose: Pose) -> PosedScene:
         """Return the same with a frame at another pose; other frames stay."""

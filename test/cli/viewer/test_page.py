@@ -12,7 +12,6 @@ pytest.importorskip('viser', reason='needs viser')
 from sdf_pose_bridge import load
 from sdf_pose_bridge.cli.printing import Units
 from sdf_pose_bridge.cli.viewer.page import Page
-from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.scene.pose_setting import PoseChange
 from sdf_pose_bridge.sdformat.file_change import FileChange
 from sdf_pose_bridge.tf.tree import TfOptions
@@ -28,9 +27,9 @@ def page_of(tmp_path, mesh_reader):
 
     def make(content, **options):
         (tmp_path / 'm.sdf').write_text(TEXT.replace('"l"/>', f'"l">{content}</link>'))
-        scene = load(tmp_path / 'm.sdf', shapes=True)
         pages.append(Page(
-            ShownScene(scene, TfOptions()), 0, Units(), mesh_reader, **options))
+            load(tmp_path / 'm.sdf', shapes=True), TfOptions(), 0, Units(), mesh_reader,
+            **options))
         return pages[-1]
     yield make
     for page in pages:
@@ -77,7 +76,7 @@ def test_name_moves_with_its_frame_when_the_file_is_read_again(page_of):
     sensor = '<sensor name="s" type="imu"><pose>0 0 {} 0 0 0</pose></sensor>'
     page = page_of(sensor.format(0))
     select(page, 'l/s')
-    page.show(page_of(sensor.format(0.1))._shown)
+    page.show(page_of(sensor.format(0.1))._shown.loaded)
     assert labels(page) == [['s', True, 0.0, 0.0, 0.1]]
 
 
@@ -109,7 +108,7 @@ def test_number_that_is_typed_while_a_file_is_read_stays(page_of):
         FileChange(scene.path, b'', 'utf-8', 0, 0, b''), 1, scene))
     select(page, 'l')
     page._edit._numbers[0].value = 0.5
-    page.show(page._shown)
+    page.show(page._shown.loaded)
     page.act(0.0)
     assert page._edit.pose.x == pytest.approx(0.5)
 
