@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from itertools import islice
 import json
 import math
@@ -32,7 +32,6 @@ from sdf_pose_bridge.cli.viewer.view_point import (
 from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.names import printable, SEPARATOR, shortened
-from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
@@ -77,60 +76,52 @@ class Drawing:
         scene, tree, labels = posed
         self._nodes, self._name, self._select = nodes, name, select
         self._node = nodes.add_frame(name, show_axes=False)
-        self._has_all_lines = 'all lines to parents' not in hidden
-        self._has_all_names = 'all names' not in hidden
-        is_hidden = np.array([frame_id in hidden_ids for frame_id in tree.frame_ids], bool)
-        is_shown = shown.is_shown(tree.elements[is_hidden].tolist())
+        self._hidden = hidden
+        ids, elements = np.array(tree.frame_ids, object), tree.elements
+        is_shown = shown.is_shown(elements[np.isin(ids, [*hidden_ids])].tolist())
         # An optical frame is shown with its parent.
-        elements = np.where(
-            tree.elements < 0, tree.elements[np.maximum(tree.parents, 0)], tree.elements)
-        self.frames = np.array([
-            frame for frame, label in enumerate(labels)
-            if label not in hidden and is_shown[elements[frame]]
-            and not is_hidden[frame]], int)
+        elements = np.where(elements < 0, elements[np.maximum(tree.parents, 0)], elements)
+        self.frames = np.flatnonzero(
+            is_shown[elements] & ~np.isin(labels, [*hidden]) & ~np.isin(ids, [*hidden_ids]))
         """The frames that are drawn, indices into the TF tree."""
-        origins = tree.poses[:, :3]
         bodies = [element for element in scene.shapes if is_shown[element]
                   and f'{Kind(scene.kinds[element]).label}s' not in hidden]
-        extent_m = float(np.ptp(np.concatenate(
-            [origins, scene.poses[bodies, :3], np.zeros((1, 3))]), axis=0).max()) or 1.0
-        self._surfaces, not_drawn = surfaces_from_scene(scene, bodies, extent_m, meshes)
+        origins = tree.poses[:, :3]
+        self._surfaces, not_drawn = surfaces_from_scene(
+            scene, bodies, _extent_m(origins, scene.poses[bodies, :3]), meshes)
         self.reasons = lines_from_not_drawn(not_drawn)
         """Lines that say which visuals and collisions cannot be drawn."""
         self.names = json.dumps({
-            'frames': [printable(tree.frame_ids[frame]) for frame in self.frames],
+            'frames': [printable(ids[frame]) for frame in self.frames],
             'bodies': [_names_of_bodies(posed, surface) for surface in self._surfaces]})
         """The names that the page shows at the pointer: those of all axes, and of the copies of
         each surface, in the order of the nodes."""
-        self._missing = _names_of_missing_meshes(scene, self._surfaces)
         self._bodies = np.array(
             [element for surface in self._surfaces for element in surface.elements], int)
         boxes = boxes_of_surfaces(scene, self._surfaces)
-        self.size_m = float(np.ptp(np.concatenate(
-            [origins, boxes.reshape(-1, 3), np.zeros((1, 3))]), axis=0).max()) or 1.0
+        self.size_m = _extent_m(origins, boxes.reshape(-1, 3))
         """The extent of everything."""
-        bounds = bounds_of_interest(origins[self.frames], boxes, np.concatenate([
-            origins[self.frames][shown.is_in_robot[elements[self.frames]]],
+        origins = origins[self.frames]
+        bounds = bounds_of_interest(origins, boxes, np.concatenate([
+            origins[shown.is_in_robot[elements[self.frames]]],
             boxes[shown.is_in_robot[self._bodies]].mean(axis=1)]))
         view_m = float(np.linalg.norm(bounds[1] - bounds[0])) or self.size_m
         self.axes_length_m = length_m = _length_of_axes(tree, view_m)
         self.bounds = bounds_with_axes(bounds, tree.poses[self.frames], length_m)
         """The lowest and the highest corner of the first view, shape (2, 3)."""
-        self.home = home_view(self.bounds, origins[self.frames], boxes)
+        self.home = home_view(self.bounds, origins, boxes)
         """The first view."""
         sizes_m = np.linalg.norm(boxes[:, 1] - boxes[:, 0], axis=1)
-        self._add_surroundings(
-            view_m, boxes[sizes_m <= view_m, 0, 2].min(initial=0.0),
-            has_grid='grid' not in hidden)
+        self._add_surroundings(view_m, boxes[sizes_m <= view_m, 0, 2].min(initial=0.0))
         self._marker = nodes.add_frame(
             f'{name}/selected', axes_length=2.0 * length_m, axes_radius=0.06 * length_m,
             visible=False)
-        self._lines = nodes.add_line_segments(
-            f'{name}/lines to parents', np.zeros((0, 2, 3)), _LINE_COLOR, thickness=2.0,
-            thickness_units='screen')
-        self._measured = nodes.add_line_segments(
-            f'{name}/measured', np.zeros((0, 2, 3)), _MEASURED_COLOR, thickness=3.0,
-            thickness_units='screen')
+        self._lines, self._measured = (
+            nodes.add_line_segments(
+                f'{name}/{lines}', np.zeros((0, 2, 3)), color, thickness=width,
+                thickness_units='screen')
+            for lines, color, width in (
+                ('lines to parents', _LINE_COLOR, 2.0), ('measured', _MEASURED_COLOR, 3.0)))
         self._axes = nodes.add_batched_axes(
             f'{name}/frames', *_places(tree.poses[self.frames]), axes_length=length_m,
             axes_radius=0.035 * length_m)
@@ -159,8 +150,8 @@ class Drawing:
         self._axes.batched_wxyzs, self._axes.batched_positions = _places(tree.poses[self.frames])
         for copies, elements in self._copies:
             copies.batched_wxyzs, copies.batched_positions = _places(scene.poses[elements])
-        self._lines.points = _lines(
-            tree, self.frames if self._has_all_lines else _ancestry(tree, frame))
+        has_all_lines = 'all lines to parents' not in self._hidden
+        self._lines.points = _lines(tree, self.frames if has_all_lines else _ancestry(tree, frame))
         labels: list[tuple[object, ...]] = []
         measured = np.zeros((0, 2, 3))
         self._marker.visible = frame >= 0
@@ -173,14 +164,15 @@ class Drawing:
                 labels.append((f'{unit.factor * length_m:.{unit.digits}f} {unit.name}', True,
                                *measured[0].mean(axis=0).tolist()))
         self._measured.points = measured
-        labels += [(name, True, *scene.poses[element, :3].tolist())
-                   for element, name in self._missing.items()]
-        named = self.frames[:MOST_NAMES].tolist() if self._has_all_names else []
-        if frame >= 0 and frame not in named:
-            named.append(frame)
+        missing = (element for surface in self._surfaces if surface.reason
+                   for element in surface.elements)
+        labels += [
+            (f'{_last_part(scene.shapes[element].mesh_uri)}?', True,
+             *scene.poses[element, :3].tolist()) for element in islice(missing, MOST_NAMES)]
+        named = self.frames[:0 if 'all names' in self._hidden else MOST_NAMES].tolist()
         return json.dumps(labels + [
-            (printable(shortened(tree.frame_ids[index].rpartition('/')[2])), index == frame,
-             *tree.poses[index, :3].tolist()) for index in named])
+            (_last_part(tree.frame_ids[index]), index == frame, *tree.poses[index, :3].tolist())
+            for index in dict.fromkeys((*named, frame)) if index >= 0])
 
     def boxes(self, posed: PosedScene, is_in: NDArray[np.bool_]) -> Floats:
         """
@@ -191,7 +183,7 @@ class Drawing:
         boxes: Floats = boxes_of_surfaces(posed.scene, self._surfaces)[is_in[self._bodies]]
         return boxes
 
-    def _add_surroundings(self, view_m: float, ground_m: float, *, has_grid: bool) -> None:
+    def _add_surroundings(self, view_m: float, ground_m: float) -> None:
         """Add light from above and from two sides, and a grid on the ground at a height."""
         nodes, name = self._nodes, self._name
         nodes.add_light_hemisphere(
@@ -201,7 +193,7 @@ class Drawing:
             nodes.add_light_point(
                 f'{name}/sun {number}', intensity=intensity, decay=0.0,
                 position=tuple(100.0 * self.size_m * np.array(direction)))
-        if not has_grid:
+        if 'grid' in self._hidden:
             return
         spacing_m = grid_spacing_m(view_m)
         middle = np.round(self.bounds.mean(axis=0)[:2] / spacing_m) * spacing_m
@@ -223,8 +215,7 @@ class Drawing:
         places = _places(posed.scene.poses[surface.elements])
         if surface.part.glb:
             return self._nodes.add_batched_glb(
-                name, surface.part.glb, *places, batched_scales=surface.scales, lod='off',
-                cast_shadow=False, receive_shadow=False)
+                name, surface.part.glb, *places, batched_scales=surface.scales, lod='off')
         rgba = np.clip(surface.rgba, 0.0, 1.0)
         if is_collision:
             rgba[:] = _COLLISION_RGBA
@@ -264,12 +255,13 @@ def _names_of_bodies(posed: PosedScene, surface: Surface) -> list[str]:
         for element in surface.elements]
 
 
-def _names_of_missing_meshes(scene: Scene, surfaces: Sequence[Surface]) -> dict[int, str]:
-    """Return the names of the files of meshes that are not drawn, by their elements."""
-    missing = (element for surface in surfaces if surface.reason for element in surface.elements)
-    return {
-        element: f'{printable(shortened(scene.shapes[element].mesh_uri.rpartition("/")[2]))}?'
-        for element in islice(missing, MOST_NAMES)}
+def _last_part(name: str) -> str:
+    return printable(shortened(name.rpartition('/')[2]))
+
+
+def _extent_m(*points: Floats) -> float:
+    """Return the extent of the root frame and of points, each of shape (n, 3)."""
+    return float(np.ptp(np.concatenate([np.zeros((1, 3)), *points]), axis=0).max()) or 1.0
 
 
 def _ancestry(tree: TfTree, frame: int) -> NDArray[np.intp]:
