@@ -128,7 +128,7 @@ def _viewer() -> ModuleType:
 
     :raises CommandError: if a library is missing or too old.
     """
-    from importlib.metadata import PackageNotFoundError, version
+    from importlib.metadata import version
     try:
         for library in LIBRARIES:
             name, oldest = re.split('>=|,', library)[:2]
@@ -137,8 +137,8 @@ def _viewer() -> ModuleType:
                 msg = f'this needs {name} {oldest} or newer and found {found}: {_how_to_install()}'
                 raise CommandError(msg)
         return importlib.import_module('sdf_pose_bridge.cli.viewer.page')
-    except (PackageNotFoundError, ImportError) as error:
-        msg = (f'this needs viser, trimesh and pycollada, and {error.name or error} is missing: '
+    except ImportError as error:
+        msg = (f'this needs viser, trimesh and pycollada, and {error.name} is missing: '
                f'{_how_to_install()}')
         raise CommandError(msg) from None
 

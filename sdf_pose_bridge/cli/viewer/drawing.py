@@ -16,7 +16,7 @@ import viser
 
 from sdf_pose_bridge.cli.printing import Unit
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
-from sdf_pose_bridge.cli.viewer.shown_scene import PosedScene, ShownScene
+from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.cli.viewer.surfaces import (
     boxes_of_surfaces,
     lines_from_not_drawn,
@@ -25,6 +25,7 @@ from sdf_pose_bridge.cli.viewer.surfaces import (
 )
 from sdf_pose_bridge.cli.viewer.view_point import (
     bounds_of_interest,
+    bounds_of_points,
     bounds_with_axes,
     grid_spacing_m,
     home_view,
@@ -63,7 +64,6 @@ class Drawing:
         mixes up nodes that are removed and added again at once.
     :param meshes: reads the meshes.
     :param shown: the scene.
-    :param posed: the same at the positions of its joints.
     :param hidden: the groups and kinds of frames that are not drawn.
     :param hidden_ids: the ids of frames that are not drawn, with all that is in them.
     :param select: called with the clicked frame, an index into the TF tree.
@@ -71,18 +71,19 @@ class Drawing:
 
     def __init__(
         self, nodes: viser.SceneApi, name: str, meshes: MeshReader, shown: ShownScene,
-        posed: PosedScene, hidden: set[str], hidden_ids: set[str], select: Callable[[int], None],
+        hidden: set[str], hidden_ids: set[str], select: Callable[[int], None],
     ) -> None:
-        scene, tree, labels = posed
+        scene, tree = shown.scene, shown.tree
         self._nodes, self._name, self._select = nodes, name, select
         self._node = nodes.add_frame(name, show_axes=False)
         self._hidden = hidden
         ids, elements = np.array(tree.frame_ids, object), tree.elements
-        is_shown = shown.is_shown(elements[np.isin(ids, [*hidden_ids])].tolist())
+        is_hidden = np.isin(ids, [*hidden_ids])
+        is_shown = shown.is_in_model & ~shown.is_in(elements[is_hidden].tolist())
         # An optical frame is shown with its parent.
         elements = np.where(elements < 0, elements[np.maximum(tree.parents, 0)], elements)
         self.frames = np.flatnonzero(
-            is_shown[elements] & ~np.isin(labels, [*hidden]) & ~np.isin(ids, [*hidden_ids]))
+            is_shown[elements] & ~np.isin(shown.labels, [*hidden]) & ~is_hidden)
         """The frames that are drawn, indices into the TF tree."""
         bodies = [element for element in scene.shapes if is_shown[element]
                   and f'{Kind(scene.kinds[element]).label}s' not in hidden]
@@ -93,13 +94,13 @@ class Drawing:
         """Lines that say which visuals and collisions cannot be drawn."""
         self.names = json.dumps({
             'frames': [printable(ids[frame]) for frame in self.frames],
-            'bodies': [_names_of_bodies(posed, surface) for surface in self._surfaces]})
+            'bodies': [_names_of_bodies(shown, surface) for surface in self._surfaces]})
         """The names that the page shows at the pointer: those of all axes, and of the copies of
         each surface, in the order of the nodes."""
         self._bodies = np.array(
             [element for surface in self._surfaces for element in surface.elements], int)
         boxes = boxes_of_surfaces(scene, self._surfaces)
-        self.size_m = _extent_m(origins, boxes.reshape(-1, 3))
+        self.size_m = _extent_m(origins, boxes)
         """The extent of everything."""
         origins = origins[self.frames]
         bounds = bounds_of_interest(origins, boxes, np.concatenate([
@@ -127,14 +128,14 @@ class Drawing:
             axes_radius=0.035 * length_m)
         self._select_by_click(self._axes, self.frames)
         self._copies = [
-            (self._add_surface(number, surface, posed), surface.elements)
+            (self._add_surface(number, surface, shown), surface.elements)
             for number, surface in enumerate(self._surfaces)]
 
     def remove(self) -> None:
         """Remove the nodes."""
         self._node.remove()
 
-    def show(self, posed: PosedScene, frame: int, reference: int, unit: Unit) -> str:
+    def show(self, shown: ShownScene, frame: int, reference: int, unit: Unit) -> str:
         """
         Show other positions of joints, larger axes for a frame, and lines to its ancestors.
 
@@ -146,7 +147,7 @@ class Drawing:
             line, its text, whether names do not cover it, and x, y and z of the point that it is
             right of and below.
         """
-        scene, tree, _ = posed
+        scene, tree = shown.scene, shown.tree
         self._axes.batched_wxyzs, self._axes.batched_positions = _places(tree.poses[self.frames])
         for copies, elements in self._copies:
             copies.batched_wxyzs, copies.batched_positions = _places(scene.poses[elements])
@@ -156,7 +157,7 @@ class Drawing:
         measured = np.zeros((0, 2, 3))
         self._marker.visible = frame >= 0
         if frame >= 0:
-            pose, origin = posed.pose_of(frame), posed.pose_of(reference)
+            pose, origin = shown.pose_of(frame), shown.pose_of(reference)
             self._marker.position, self._marker.wxyz = pose[:3], (pose.qw, *pose[3:6])
             if reference != ROOT_IS_PARENT:
                 measured = np.array([[origin[:3], pose[:3]]])
@@ -174,14 +175,10 @@ class Drawing:
             (_last_part(tree.frame_ids[index]), index == frame, *tree.poses[index, :3].tolist())
             for index in dict.fromkeys((*named, frame)) if index >= 0])
 
-    def boxes(self, posed: PosedScene, is_in: NDArray[np.bool_]) -> Floats:
-        """
-        Return the boxes around visuals and collisions, shape (n, 2, 3).
-
-        :param is_in: whether each element of the scene counts.
-        """
-        boxes: Floats = boxes_of_surfaces(posed.scene, self._surfaces)[is_in[self._bodies]]
-        return boxes
+    def boxes(self, shown: ShownScene, element: int) -> Floats:
+        """Return the boxes around the visuals and collisions in an element, shape (n, 2, 3)."""
+        is_in = shown.is_in([element])[self._bodies]
+        return np.asarray(boxes_of_surfaces(shown.scene, self._surfaces)[is_in])
 
     def _add_surroundings(self, view_m: float, ground_m: float) -> None:
         """Add light from above and from two sides, and a grid on the ground at a height."""
@@ -209,10 +206,10 @@ class Drawing:
             f'{name}/grid spacing', f'grid {spacing_m:g} m', font_screen_scale=0.8,
             position=(*(middle + spacing_m * np.round(to_camera / spacing_m)), height_m))
 
-    def _add_surface(self, number: int, surface: Surface, posed: PosedScene) -> Any:
+    def _add_surface(self, number: int, surface: Surface, shown: ShownScene) -> Any:
         is_collision = surface.kind == Kind.COLLISION
         name = f'{self._name}/{surface.kind.label}s/{number}'
-        places = _places(posed.scene.poses[surface.elements])
+        places = _places(shown.scene.poses[surface.elements])
         if surface.part.glb:
             return self._nodes.add_batched_glb(
                 name, surface.part.glb, *places, batched_scales=surface.scales, lod='off')
@@ -225,7 +222,7 @@ class Drawing:
             batched_colors=np.round(255.0 * rgba[:, :3]).astype(np.uint8),
             batched_opacities=rgba[:, 3] if (rgba[:, 3] < 1.0).any() else None,
             lod='off', wireframe=is_collision, flat_shading=not is_collision, side='double')
-        self._select_by_click(copies, posed.tree.nearest_frames[surface.elements])
+        self._select_by_click(copies, shown.tree.nearest_frames[surface.elements])
         return copies
 
     def _select_by_click(self, copies: Any, frames: NDArray[Any]) -> None:
@@ -246,9 +243,9 @@ def _lines(tree: TfTree, shown: NDArray[np.intp]) -> Floats:
     return np.stack([origins[tree.parents[frames]], origins[frames]], axis=1)
 
 
-def _names_of_bodies(posed: PosedScene, surface: Surface) -> list[str]:
+def _names_of_bodies(shown: ShownScene, surface: Surface) -> list[str]:
     """Return the names of the copies of a surface: the frame of each, then the body in it."""
-    ids, names, frames = posed.ids, posed.scene.names, posed.tree.nearest_frames
+    ids, names, frames = shown.ids, shown.scene.names, shown.tree.nearest_frames
     return [
         printable(f'{ids[frames[element]]}, {surface.kind.label} '
                   f'{names[element].rpartition(SEPARATOR)[2]}')
@@ -260,8 +257,8 @@ def _last_part(name: str) -> str:
 
 
 def _extent_m(*points: Floats) -> float:
-    """Return the extent of the root frame and of points, each of shape (n, 3)."""
-    return float(np.ptp(np.concatenate([np.zeros((1, 3)), *points]), axis=0).max()) or 1.0
+    """Return the extent of the root frame and of points, each of shape (..., 3)."""
+    return float(np.ptp(bounds_of_points(np.zeros(3), *points), axis=0).max()) or 1.0
 
 
 def _ancestry(tree: TfTree, frame: int) -> NDArray[np.intp]:

@@ -12,7 +12,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from sdf_pose_bridge.cli.printing import POSE_LABELS, Units
-from sdf_pose_bridge.cli.viewer.shown_scene import PosedScene
+from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.geometry.formats import converted_poses
 from sdf_pose_bridge.geometry.poses import Pose, relative_pose
 from sdf_pose_bridge.names import printable, quoted_names, SEPARATOR
@@ -47,7 +47,7 @@ def html_of_copy_button(text: str) -> str:
             f'border:1px solid;border-radius:3px;opacity:0.6">copy</button>')
 
 
-def html_of_frame(posed: PosedScene, frame: int, reference: int, units: Units) -> str:
+def html_of_frame(shown: ShownScene, frame: int, reference: int, units: Units) -> str:
     """
     Describe a frame.
 
@@ -57,25 +57,25 @@ def html_of_frame(posed: PosedScene, frame: int, reference: int, units: Units) -
     :return: names, place in the file, poses in the root, the parent and the other frame, and the
         last pose in formats to copy.
     """
-    scene, tree, labels = posed
-    ids, element = posed.ids, int(tree.elements[frame])
-    rows = [(ids[frame], f'<b>{escaped(ids[frame])}</b> {labels[frame]}')]
+    scene, tree, ids = shown.scene, shown.tree, shown.ids
+    element = int(tree.elements[frame])
+    rows = [(ids[frame], f'<b>{escaped(ids[frame])}</b> {shown.labels[frame]}')]
     if element >= 0:
         rows += [(text, escaped(text)) for text in (
             scene.names[element], str(scene.place(element)))]
     lines = [html_of_copy_button(printable(text)) + row for text, row in rows]
     lines += [
-        f'in <b>{escaped(ids[other])}</b><br>{"<br>".join(_place(posed, other, frame, units))}'
+        f'in <b>{escaped(ids[other])}</b><br>{"<br>".join(_place(shown, other, frame, units))}'
         for other in dict.fromkeys((reference, ROOT_IS_PARENT, int(tree.parents[frame])))
         if other not in (NO_PARENT, frame)]
-    pose = posed.pose_in(reference, frame)
+    pose = shown.pose_in(reference, frame)
     # Smaller differences are rounding errors. Adding zero removes negative zeros.
     rpy, quat, franka = (
         (converted_poses([pose], 'sdf_quat_xyzw', name)[0].round(12) + 0.0).tolist()
         for name in ('sdf_rpy', 'sdf_quat_xyzw', 'franka_matrix'))
     arguments = zip(('x', 'y', 'z', 'qx', 'qy', 'qz', 'qw'), quat, strict=True)
     copied = {
-        'SDF': f'<pose{_relative_to(posed, frame, reference)}>{_text(rpy)}</pose>',
+        'SDF': f'<pose{_relative_to(shown, frame, reference)}>{_text(rpy)}</pose>',
         'static_transform_publisher': ' '.join([
             *(f'--{name} {value!r}' for name, value in arguments),
             '--frame-id', shlex.quote(ids[reference]),
@@ -95,15 +95,15 @@ def _text(values: Sequence[float]) -> str:
     return ' '.join(map(repr, values))
 
 
-def _place(posed: PosedScene, reference: int, frame: int, units: Units) -> tuple[str, str]:
-    texts = units.texts(posed.pose_in(reference, frame))
+def _place(shown: ShownScene, reference: int, frame: int, units: Units) -> tuple[str, str]:
+    texts = units.texts(shown.pose_in(reference, frame))
     return (f'xyz {" ".join(texts[:3])} {units.length.name}',
             f'rpy {" ".join(texts[3:])} {units.angle.name}')
 
 
-def _relative_to(posed: PosedScene, frame: int, reference: int) -> str:
+def _relative_to(shown: ShownScene, frame: int, reference: int) -> str:
     """Return the attribute of a pose; empty if SDFormat has no name for the frame."""
-    scene, tree, _ = posed
+    scene, tree = shown.scene, shown.tree
     # The root frame, at the end, and an optical frame have no element.
     element, own = ([*tree.elements.tolist(), -1][index] for index in (reference, frame))
     if element < 0:
@@ -113,10 +113,10 @@ def _relative_to(posed: PosedScene, frame: int, reference: int) -> str:
     return f' relative_to={quoteattr(scene.names[element].removeprefix(scope))}'
 
 
-def html_of_place(posed: PosedScene, frame: int, reference: int, units: Units) -> str:
+def html_of_place(shown: ShownScene, frame: int, reference: int, units: Units) -> str:
     """Write the pose of a frame in another one in a line."""
-    return (f'<b>{escaped(posed.ids[frame])}</b> in {escaped(posed.ids[reference])}: '
-            f'{", ".join(_place(posed, reference, frame, units))}')
+    return (f'<b>{escaped(shown.ids[frame])}</b> in {escaped(shown.ids[reference])}: '
+            f'{", ".join(_place(shown, reference, frame, units))}')
 
 
 def html_of_moved(old: TfTree, new: TfTree, frame: int) -> str:

@@ -9,7 +9,6 @@ from functools import partial
 from itertools import cycle
 from pathlib import Path
 
-import numpy as np
 import viser
 
 from sdf_pose_bridge.cli.printing import DEGREES, RADIANS, Units
@@ -25,7 +24,7 @@ from sdf_pose_bridge.cli.viewer.frame_texts import (
 )
 from sdf_pose_bridge.cli.viewer.joint_sliders import JointSliders
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
-from sdf_pose_bridge.cli.viewer.pose_edit import EditedFrame, FindChange, PoseEdit
+from sdf_pose_bridge.cli.viewer.pose_edit import FindChange, PoseEdit
 from sdf_pose_bridge.cli.viewer.selected_frame import SelectedFrame
 from sdf_pose_bridge.cli.viewer.server import Events, server_for_its_owner
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
@@ -77,15 +76,15 @@ class Page:
         asked = gui.add_text('asked', '')
         self._events.when(asked.on_update, lambda: self._answer(asked.value.partition(' ')[2]))
         self._edit = None if find_change is None else PoseEdit(
-            self._server, scene, find_change, self._events)
+            self._server, self._shown, find_change, self._events)
         folder_of_selected = gui.add_folder('Selected frame', visible=False)
         self._angles = self._add_view_controls()
         self._switches = self._add_switches()
         self._joints = JointSliders(gui, self._shown.joints, {}, units, self._events)
         self._selected = SelectedFrame(gui, folder_of_selected, self._events)
         self._node_names = cycle(('/drawing', '/other drawing'))
-        self._move()
-        self._draw()
+        self._shown = self._shown.at(self._joints.positions)
+        self._drawing = self._new_drawing()
         self._refresh()
         camera = self._server.initial_camera
         camera.position, camera.look_at = self._drawing.home
@@ -116,10 +115,10 @@ class Page:
 
         :raises SdfError: as the constructor does.
         """
-        shown = ShownScene(scene, self._options)
-        before, self._shown, self._errors = self._shown, shown, ()
+        before, self._shown = self._shown, ShownScene(scene, self._options)
+        self._errors = ()
         with self._server.atomic():
-            if shown.kinds != before.kinds:
+            if {*self._shown.labels} != {*before.labels}:
                 self._switches.remove()
                 self._switches = self._add_switches(self._switches.order)
             self._refresh()
@@ -150,46 +149,38 @@ class Page:
             self._joints = JointSliders(
                 self._server.gui, shown.joints, self._joints.positions, units, self._events,
                 self._joints.folder.order)
-        if (shown, self._joints.positions) != self._posed_for:
-            self._move()
-        drawn = posed = self._posed
-        selected.list_frames(posed)
-        if (shown, self._hidden, selected.hidden) != self._drawn_for:
+        if shown.positions != self._joints.positions:
+            self._shown = shown = shown.at(self._joints.positions)
+        selected.list_frames(shown)
+        if (shown.loaded, self._hidden, selected.hidden) != self._drawn_for:
             self._drawing.remove()
-            self._draw()
-        tree, frame, reference, strip = posed.tree, selected.frame, selected.reference, ''
+            self._drawing = self._new_drawing()
+        drawn, frame, reference, strip = shown, selected.frame, selected.reference, ''
         if edit is not None:
-            edit.refresh(EditedFrame(shown.loaded) if frame < 0 else EditedFrame(
-                shown.loaded, int(tree.elements[frame]), tree.frame_ids[frame],
-                posed.pose_of(frame), posed.pose_of(reference), self._posed_for[1]), units)
+            edit.refresh(shown, frame, reference, units)
             strip = edit.html
             if edit.scene_ahead is not None:
-                drawn = shown.at(self._posed_for[1], edit.scene_ahead)
+                drawn = shown.at(shown.positions, edit.scene_ahead)
             if edit.pose is not None:
                 drawn = drawn.with_pose(frame, edit.pose)
         if frame >= 0:
-            moved = html_of_moved(tree, drawn.tree, frame)
-            strip = f'{html_of_place(drawn, frame, reference, units)}{moved}{strip}'
+            strip = (html_of_place(drawn, frame, reference, units)
+                     + html_of_moved(shown.tree, drawn.tree, frame) + strip)
         self._labels.content = html_of_data(
             'labels', self._drawing.show(drawn, frame, reference, units.length))
         selected.describe(html_of_frame(drawn, frame, reference, units) if frame >= 0 else '')
         self._strip.content = html_of_data(
             'strip', f'{html_of_lines("errors", self._errors)}{strip}')
 
-    def _move(self) -> None:
-        """Find the frames at the positions of the joints."""
-        self._posed_for = self._shown, self._joints.positions
-        self._posed = self._shown.at(self._joints.positions)
-
-    def _draw(self) -> None:
+    def _new_drawing(self) -> Drawing:
         hidden = self._hidden, self._selected.hidden
-        self._drawn_for = self._shown, *map(frozenset, hidden)
-        self._drawing = Drawing(
-            self._server.scene, next(self._node_names), self._meshes, self._shown, self._posed,
-            *hidden,
+        self._drawn_for = self._shown.loaded, *map(frozenset, hidden)
+        drawing = Drawing(
+            self._server.scene, next(self._node_names), self._meshes, self._shown, *hidden,
             lambda frame: self._events.put(partial(self._selected.answer, 'select', frame)))
-        self._reasons.content = html_of_reasons(self._drawing.reasons)
-        self._names.content = html_of_data('names', self._drawing.names)
+        self._reasons.content = html_of_reasons(drawing.reasons)
+        self._names.content = html_of_data('names', drawing.names)
+        return drawing
 
     def _add_client(self, client: viser.ClientHandle) -> None:
         if client.camera.aspect < 1.0:
@@ -209,7 +200,7 @@ class Page:
         """Add the folder "Show"."""
         switches = self._server.gui.add_folder('Show', expand_by_default=False, order=order)
         with switches:
-            for name in (*self._shown.kinds, *GROUPS):
+            for name in dict.fromkeys((*self._shown.labels, *GROUPS)):
                 self._add_switch(name)
         return switches
 
@@ -244,11 +235,11 @@ class Page:
         if name in DIRECTIONS:
             view = view_of_bounds(drawing.bounds, DIRECTIONS[name])
         elif name == 'zoom to' and self._selected.frame >= 0:
-            tree, frame = self._posed.tree, self._selected.frame
+            tree, frame = self._shown.tree, self._selected.frame
             origin, half_m = tree.poses[frame, :3], 3.0 * drawing.axes_length_m
-            boxes = drawing.boxes(self._posed, self._shown.is_in(int(tree.elements[frame])))
-            view = view_of_bounds(bounds_of_points(np.concatenate([
-                [origin - half_m, origin + half_m], boxes.reshape(-1, 3)])),
+            boxes = drawing.boxes(self._shown, int(tree.elements[frame]))
+            view = view_of_bounds(
+                bounds_of_points(origin - half_m, origin + half_m, boxes),
                 view.position - view.look_at)
         for client in self._server.get_clients().values():
             self._turn(client, view)

@@ -4,16 +4,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
-from types import MappingProxyType
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 import viser
 
 from sdf_pose_bridge.cli.printing import POSE_LABELS, Units
 from sdf_pose_bridge.cli.viewer.frame_texts import escaped, html_of_difference, html_of_lines
 from sdf_pose_bridge.cli.viewer.server import Events
+from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.formats import POSE_FORMATS
 from sdf_pose_bridge.geometry.poses import Pose, pose_product, relative_pose
@@ -30,22 +30,6 @@ _STEPS = (1.0, 10.0, 100.0, 1000.0)
 """Step of the arrows beside a number, in units of its last digit."""
 
 
-class EditedFrame(NamedTuple):
-    """The edited frame."""
-
-    scene: Scene
-    """The scene as it was loaded."""
-    element: int = -1
-    """Its element, or -1 if there is none to edit."""
-    name: str = ''
-    pose: Pose = Pose()
-    """Its pose in the root frame."""
-    reference: Pose = Pose()
-    """The pose, in the root frame, of the frame relative to which numbers are."""
-    positions: Mapping[str, float] = MappingProxyType({})
-    """The positions of joints."""
-
-
 class PoseEdit:
     """
     The folder that changes the pose of the selected frame, and the gizmo at the frame.
@@ -54,13 +38,13 @@ class PoseEdit:
     """
 
     def __init__(
-        self, server: viser.ViserServer, scene: Scene, find_change: FindChange, events: Events,
+        self, server: viser.ViserServer, shown: ShownScene, find_change: FindChange,
+        events: Events,
     ) -> None:
-        self._find_change, self._frame = find_change, EditedFrame(scene)
+        self._find_change, self._shown, self._frame = find_change, shown, -1
+        self._target, self._reference = ('', Pose()), Pose()
         self.pose: Pose | None = None
         """The new pose in the root frame; None until something is changed."""
-        self.scene_ahead: Scene | None = None
-        """The scene as the file would give it, or gives it by now; None if nothing is changed."""
         self._is_written = False
         self._change: PoseChange | None = None
         self._looked_at: tuple[object, ...] = ()
@@ -77,47 +61,60 @@ class PoseEdit:
             self._steps = gui.add_dropdown('steps', ('',))
         for control in (self._gizmo, self._steps, *self._numbers):
             events.when(control.on_update)
-        self._units, self._shown = Units(), [0.0] * 6
+        self._units, self._values = Units(), [0.0] * 6
         self._texts = self._units.texts(Pose())
 
-    def refresh(self, frame: EditedFrame, units: Units) -> None:
+    def refresh(self, shown: ShownScene, frame: int, reference: int, units: Units) -> None:
         """
         Edit a frame; take what was typed or dragged.
 
         The new pose stays if the frame is the same and has not moved, even if the file has changed
         elsewhere.
+
+        :param frame: its index, or -1 for none.
+        :param reference: index of the frame relative to which numbers are.
         """
-        before, self._frame = self._frame, frame
-        is_read_again = frame.scene is not before.scene
-        if is_read_again or frame.element != before.element:
-            self._looked_at, self.scene_ahead = (), None
-        if frame.name != before.name:
+        before, target = self._target, (shown.ids[frame], shown.pose_of(frame))
+        is_read_again = shown.loaded is not self._shown.loaded
+        self._shown, self._frame = shown, frame
+        self._target, self._reference = target, shown.pose_of(reference)
+        if target[0] != before[0]:
             self._change = None
-        if (frame.name, frame.pose) != (before.name, before.pose) or (
-                self._is_written and is_read_again):
+        if is_read_again or target[0] != before[0]:
+            self._looked_at = ()
+        if target != before or (self._is_written and is_read_again):
             self._take(None)
-        elif frame.element >= 0:
+        elif self._change is not None:
             self._take_numbers()
             self._take_gizmo()
         self._show(units)
 
     def look_ahead(self) -> bool:
         """Find the scene with the new pose; return whether this was not known."""
-        scene, element, _, pose, _, positions = self._frame
-        asked = self.pose, self.pose and positions
+        shown, asked = self._shown, (self.pose, self.pose and self._shown.positions)
+        element = int(shown.tree.elements[self._frame]) if self._frame >= 0 else -1
         if element < 0 or self._is_written or asked == self._looked_at:
             return False
-        self._looked_at, self._errors, self.scene_ahead = asked, [], None
+        self._looked_at, self._errors = asked, []
         try:
             self._change = self._find_change(
-                scene, element, self.pose or pose,
-                lambda other, index: scene_at_positions(other, positions).pose_of(index))
-            self.scene_ahead = self._change.scene if self.pose else None
+                shown.loaded, element, self._pose,
+                lambda scene, index: scene_at_positions(scene, shown.positions).pose_of(index))
         except SdfError as error:
             self._errors = list(map(str, error.errors))
             # While one drags, the next pose may be possible.
             self._change = self._change if self.pose else None
         return True
+
+    @property
+    def scene_ahead(self) -> Scene | None:
+        """The scene as the file would give it, or gives it by now; None if nothing is changed."""
+        is_known = self.pose and self._looked_at and not self._errors
+        return self._change.scene if self._change is not None and is_known else None
+
+    @property
+    def _pose(self) -> Pose:
+        return self.pose or self._target[1]
 
     @property
     def actions(self) -> dict[str, Callable[[], object]]:
@@ -136,7 +133,7 @@ class PoseEdit:
             f'<div>in the file {escaped(str(Path(self._change.file.path).resolve()))}</div>')
         if self.pose is not None and not self._is_written:
             text += html_of_difference(
-                self._frame.pose, self.pose, self._frame.reference, self._units)
+                self._target[1], self.pose, self._reference, self._units)
         labels = (f'<label data-ask="{label}">{label}</label>' for label in self.actions)
         errors = html_of_lines('errors', [*self._doubts, *self._errors])
         return f'{text}{errors}{"".join(labels)}'
@@ -144,29 +141,29 @@ class PoseEdit:
     def _take(self, pose: Pose | None, *doubts: str) -> None:
         self.pose, self._doubts, self._is_written = pose, doubts, False
         if pose is None:
-            self._errors, self.scene_ahead = [], None
+            self._errors = []
 
     def _take_numbers(self) -> None:
         typed = [number.value for number in self._numbers]
-        if typed == self._shown:
+        if typed == self._values:
             return
-        reference, units = self._frame.reference, self._units.of_pose
-        at = relative_pose(reference, self.pose or self._frame.pose)
+        units = self._units.of_pose
+        at = relative_pose(self._reference, self._pose)
         in_si = [number / unit.factor for number, unit in zip(typed, units, strict=True)]
         # Those that were not typed keep all their digits.
         values = [exact if number == shown else value for exact, number, shown, value in zip(
-            (*at[:3], *rpy_from_quaternion(at[3:])), typed, self._shown, in_si, strict=True)]
+            (*at[:3], *rpy_from_quaternion(at[3:])), typed, self._values, in_si, strict=True)]
         pose = Pose(*(*values[:3], *quaternion_from_rpy(tuple(values[3:]))))
-        self._shown, self._texts = typed, self._units.texts(pose)
+        self._values, self._texts = typed, self._units.texts(pose)
         doubt = POSE_FORMATS['sdf_rpy'].doubt(in_si)
         self._take(
-            pose_product(reference, pose),
+            pose_product(self._reference, pose),
             *[f'{doubt.reason}; did you mean {doubt.likely_unit}?'] if doubt else ())
 
     def _take_gizmo(self) -> None:
         w, x, y, z = self._gizmo.wxyz.tolist()
         pose = Pose(*(*self._gizmo.position.tolist(), x, y, z, w))
-        if self._gizmo.visible and pose != self._placed:
+        if pose != self._placed:
             # The gizmo is not placed again: under the pointer it may be elsewhere by now.
             self._placed = pose
             self._take(pose)
@@ -183,14 +180,14 @@ class PoseEdit:
             number.step = step * 0.1 ** unit.digits
             number.disabled = self._change is None
         self._gizmo.visible = self._change is not None
-        pose = self.pose or self._frame.pose
+        pose = self._pose
         if pose != self._placed:
             self._gizmo.position, self._gizmo.wxyz = pose[:3], (pose.qw, *pose[3:6])
             self._placed = pose
-        texts = units.texts(relative_pose(self._frame.reference, pose))
+        texts = units.texts(relative_pose(self._reference, pose))
         if texts != self._texts:
-            before, self._shown = self._shown, [*map(float, texts)]
-            for number, value, old in zip(self._numbers, self._shown, before, strict=True):
+            before, self._values = self._values, [*map(float, texts)]
+            for number, value, old in zip(self._numbers, self._values, before, strict=True):
                 # Others may have been typed just now.
                 if value != old:
                     number.value = value

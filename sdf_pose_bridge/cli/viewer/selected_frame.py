@@ -10,7 +10,7 @@ import viser
 
 from sdf_pose_bridge.cli.viewer.frame_texts import escaped, rows_of_tree
 from sdf_pose_bridge.cli.viewer.server import Events
-from sdf_pose_bridge.cli.viewer.shown_scene import PosedScene
+from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 
 MOST_ROWS = 300
@@ -77,9 +77,9 @@ class SelectedFrame:
             ids = self._folded if verb == 'fold' else self.hidden
             ids ^= {self._ids[frame]}
 
-    def list_frames(self, posed: PosedScene) -> None:
+    def list_frames(self, shown: ShownScene) -> None:
         """List the frames of a scene; the selected one stays."""
-        _, tree, kinds = posed
+        tree, kinds = shown.tree, shown.labels
         self._ids = ids = tree.frame_ids
         choices = (tree.root_frame, *ids[:_MOST_CHOICES])
         if choices != self._choice.options:

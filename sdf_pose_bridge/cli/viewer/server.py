@@ -53,12 +53,10 @@ class Events(SimpleQueue[Callable[[], object]]):
 
     def asked(self, seconds: float) -> list[Callable[[], object]]:
         """Return the functions to call; wait no longer than this for them."""
-        actions = []
         with contextlib.suppress(Empty):
-            actions.append(self.get(timeout=seconds))
-            while True:
-                actions.append(self.get_nowait())
-        return actions
+            first = self.get(timeout=seconds)
+            return [first, *(self.get_nowait() for _ in range(self.qsize()))]
+        return []
 
 
 def server_for_its_owner(port: int, title: str) -> tuple[viser.ViserServer, str]:

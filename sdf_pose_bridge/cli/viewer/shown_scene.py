@@ -1,12 +1,12 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Prepare a scene for the page: its models, its joints, and its frames at positions of joints."""
+"""A scene as the page shows it: its models, its joints, and its frames at positions of joints."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+import copy
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,40 +19,12 @@ from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.joint_motion import JointMotion
 from sdf_pose_bridge.tf.joint_positions import JointPositions, scene_at_positions
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT, tf_parents_from_scene
-from sdf_pose_bridge.tf.tree import elements_in_model, tf_tree_from_scene, TfOptions, TfTree
-
-
-class PosedScene(NamedTuple):
-    """A scene at some positions of its joints, and its TF tree there."""
-
-    scene: Scene
-    tree: TfTree
-    labels: Sequence[str]
-    """The label of the kind of each frame."""
-
-    def pose_of(self, frame: int) -> Pose:
-        """Return the pose of a frame in the root frame, for which ``ROOT_IS_PARENT`` stands."""
-        return Pose() if frame == ROOT_IS_PARENT else Pose(*self.tree.poses[frame].tolist())
-
-    @property
-    def ids(self) -> Sequence[str]:
-        """The ids of all frames, and of the root frame, at the index ``ROOT_IS_PARENT``."""
-        return *self.tree.frame_ids, self.tree.root_frame
-
-    def pose_in(self, reference: int, frame: int) -> Pose:
-        """Return the pose of a frame in another one."""
-        return relative_pose(self.pose_of(reference), self.pose_of(frame))
-
-    def with_pose(self, frame: int, pose: Pose) -> PosedScene:
-        """Return the same with a frame at another pose; other frames stay."""
-        poses = self.tree.poses.copy()
-        poses[frame] = pose
-        return self._replace(tree=replace(self.tree, poses=poses))
+from sdf_pose_bridge.tf.tree import elements_in_model, tf_tree_from_scene, TfOptions
 
 
 class ShownScene:
     """
-    A scene as the page shows it.
+    A scene as the page shows it, at some positions of its joints; at first as it was loaded.
 
     :param loaded: the scene, loaded with its shapes.
     :param options: the elements that are frames, and the rules for their names.
@@ -60,44 +32,56 @@ class ShownScene:
     """
 
     def __init__(self, loaded: Scene, options: TfOptions) -> None:
-        tree = tf_tree_from_scene(loaded, options)
+        self.loaded, self.scene, self._options = loaded, loaded, options
+        self.positions: Mapping[str, float] = {}
+        """The positions of joints, in radians or metres; the others are at zero."""
+        self.tree = tf_tree_from_scene(loaded, options)
+        """The TF tree at these positions."""
+        self.ids: Sequence[str] = (*self.tree.frame_ids, self.tree.root_frame)
+        """The ids of all frames, and of the root frame, at the index ``ROOT_IS_PARENT``."""
+        self.labels: Sequence[str] = kind_labels_of(loaded, self.tree)
+        """The label of the kind of each frame."""
         dofs = JointMotion(loaded, tf_parents_from_scene(loaded)).dofs
-        self.loaded, self._options = loaded, options
-        self._is_in_model = elements_in_model(loaded, options.model) & (loaded.roots == 0)
-        # The outermost element around each, below the world or the implicit root.
-        self._tops = ends_from_pointers(
-            np.where(loaded.parents[loaded.parents] < 0, -1, loaded.parents))
-        self._labels = kind_labels_of(loaded, tree)
-        self.kinds = tuple(dict.fromkeys(self._labels))
-        """The labels of the kinds of its frames."""
+        self.is_in_model = elements_in_model(loaded, options.model) & (loaded.roots == 0)
+        """Shape (n,): whether each element is to be shown."""
         self.joints: dict[str, JointRange] = {
             name: range_of_dof(dof)
             for name, dof in zip(JointPositions(loaded, dofs).names, dofs, strict=True)
-            if self._is_in_model[dof.joint.element] and dof.axis.mimic is None}
+            if self.is_in_model[dof.joint.element] and dof.axis.mimic is None}
         """The range of each degree of freedom that does not follow another one."""
-        self.is_in_robot: NDArray[np.bool_] = np.isin(
-            self._tops, self._tops[[dof.joint.element for dof in dofs]])
+        self.is_in_robot = self.is_in(
+            [loaded.top_level_element(dof.joint.element) for dof in dofs])
         """Shape (n,): whether each element is in a model that moves."""
 
-    def is_shown(self, hidden: Iterable[int]) -> NDArray[np.bool_]:
-        """Return whether each element is in none of the hidden elements, shape (n,)."""
-        shown: NDArray[np.bool_] = self._is_in_model.copy()
-        for element in hidden:
-            shown &= ~self.is_in(element)
-        return shown
+    def is_in(self, elements: Sequence[int]) -> NDArray[np.bool_]:
+        """Return whether each element is one of some elements, or in one, shape (n,)."""
+        parents = self.loaded.parents
+        is_end = np.isin(np.arange(len(parents)), elements)
+        return np.take(is_end, ends_from_pointers(np.where(is_end, -1, parents)))
 
-    def is_in(self, element: int) -> NDArray[np.bool_]:
-        """Return whether each element is a given one, or in it, shape (n,)."""
-        is_end = np.arange(len(self.loaded.parents)) == element
-        inside: NDArray[np.bool_] = ends_from_pointers(
-            np.where(is_end, -1, self.loaded.parents)) == element
-        return inside
-
-    def at(self, positions: Mapping[str, float], scene: Scene | None = None) -> PosedScene:
+    def at(self, positions: Mapping[str, float], scene: Scene | None = None) -> ShownScene:
         """
-        Return the scene with its joints at positions, in radians or metres.
+        Return the scene at positions of its joints.
 
         :param scene: the same scene with other poses.
         """
-        scene = scene_at_positions(scene or self.loaded, positions)
-        return PosedScene(scene, tf_tree_from_scene(scene, self._options), self._labels)
+        shown = copy.copy(self)
+        shown.positions, shown.scene = positions, scene_at_positions(
+            scene or self.loaded, positions)
+        shown.tree = tf_tree_from_scene(shown.scene, self._options)
+        return shown
+
+    def with_pose(self, frame: int, pose: Pose) -> ShownScene:
+        """Return the scene with a frame at another pose; other frames stay."""
+        poses, shown = self.tree.poses.copy(), copy.copy(self)
+        poses[frame] = pose
+        shown.tree = replace(self.tree, poses=poses)
+        return shown
+
+    def pose_of(self, frame: int) -> Pose:
+        """Return the pose of a frame in the root frame, for which ``ROOT_IS_PARENT`` stands."""
+        return Pose() if frame == ROOT_IS_PARENT else Pose(*self.tree.poses[frame].tolist())
+
+    def pose_in(self, reference: int, frame: int) -> Pose:
+        """Return the pose of a frame in another one."""
+        return relative_pose(self.pose_of(reference), self.pose_of(frame))

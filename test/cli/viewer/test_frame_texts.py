@@ -44,10 +44,10 @@ def described(scene):
 
 
 def html_of(scene, frame, reference=None):
-    posed = ShownScene(scene, TfOptions()).at({})
-    ids = posed.tree.frame_ids
+    shown = ShownScene(scene, TfOptions())
+    ids = shown.ids
     return html_of_frame(
-        posed, ids.index(frame), ROOT_IS_PARENT if reference is None else ids.index(reference),
+        shown, ids.index(frame), ROOT_IS_PARENT if reference is None else ids.index(reference),
         Units())
 
 
@@ -84,9 +84,9 @@ def test_frames_that_move_with_another_are_named(scene):
 
 
 def test_place_of_a_frame_is_one_line_of_text(scene):
-    posed = ShownScene(scene, TfOptions()).at({})
-    frame, reference = map(posed.tree.frame_ids.index, (HOSTILE, 'm/l'))
-    assert html_of_place(posed.with_pose(reference, Pose(x=-0.5)), frame, reference, Units()) == (
+    shown = ShownScene(scene, TfOptions())
+    frame, reference = map(shown.ids.index, (HOSTILE, 'm/l'))
+    assert html_of_place(shown.with_pose(reference, Pose(x=-0.5)), frame, reference, Units()) == (
         f'<b>{html.escape(HOSTILE)}</b> in m/l: xyz 0.5000 0.0000 0.0000 m, '
         'rpy 0.0000 0.0000 0.0000 rad')
 

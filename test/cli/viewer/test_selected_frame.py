@@ -16,18 +16,18 @@ from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfOptions
 
 
-def posed_scene(*frames):
+def shown_scene(*frames):
     text = ''.join(f'<frame name="{name}"/>' for name in frames)
     scene = load_text(
         f'<sdf version="1.11"><world name="w">{text}</world></sdf>'.encode(), 'cell.sdf')
-    return ShownScene(scene, TfOptions()).at({})
+    return ShownScene(scene, TfOptions())
 
 
 @pytest.fixture
 def selected():
     server = viser.ViserServer('127.0.0.1', 0, verbose=False)
     selected = SelectedFrame(server.gui, server.gui.add_folder(''), Events())
-    selected.list_frames(posed_scene('a', 'b', 'c'))
+    selected.list_frames(shown_scene('a', 'b', 'c'))
     yield selected
     server.stop()
 
@@ -39,15 +39,15 @@ def test_frame_that_is_gone_is_not_selected(selected):
 
 def test_selected_frame_stays_where_others_are_listed(selected):
     selected.answer('select', 1)
-    selected.list_frames(posed_scene('b'))
+    selected.list_frames(shown_scene('b'))
     assert selected.frame == 0
-    selected.list_frames(posed_scene('a'))
+    selected.list_frames(shown_scene('a'))
     assert selected.frame == -1
 
 
 def test_more_frames_than_rows(selected, monkeypatch):
     monkeypatch.setattr(selected_frame, 'MOST_ROWS', 4)
-    selected.list_frames(posed_scene(*'abcdef'))
+    selected.list_frames(shown_scene(*'abcdef'))
     assert '2 more, to be found by the search' in selected._rows.content
 
 
