@@ -9,11 +9,18 @@ import re
 import pytest
 
 pytest.importorskip('viser', reason='needs viser')
+import viser
+
 from sdf_pose_bridge import load
 from sdf_pose_bridge.cli.printing import Units
-from sdf_pose_bridge.cli.viewer.page import Page
+from sdf_pose_bridge.cli.viewer import page as page_module
+from sdf_pose_bridge.cli.viewer.page import Page, SelectedFrame
+from sdf_pose_bridge.cli.viewer.server import Events
+from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
+from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.pose_setting import PoseChange
 from sdf_pose_bridge.sdformat.file_change import FileChange
+from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfOptions
 
 TEXT = """<sdf version="1.11"><model name="m"><link name="l"/></model></sdf>"""
@@ -137,3 +144,48 @@ def test_page_says_so_when_collisions_are_switched_on(page_of):
     assert page.reasons == []
     set_switches(page, True, 'collisions')
     assert '1 shape cannot be drawn' in page._reasons.content
+
+
+# The selected frame
+
+def shown_scene(*frames):
+    text = ''.join(f'<frame name="{name}"/>' for name in frames)
+    scene = load_text(
+        f'<sdf version="1.11"><world name="w">{text}</world></sdf>'.encode(), 'cell.sdf')
+    return ShownScene(scene, TfOptions())
+
+
+@pytest.fixture
+def selected():
+    server = viser.ViserServer('127.0.0.1', 0, verbose=False)
+    selected = SelectedFrame(server.gui, server.gui.add_folder(''), Events())
+    selected.list_frames(shown_scene('a', 'b', 'c'))
+    yield selected
+    server.stop()
+
+
+def test_frame_that_is_gone_is_not_selected(selected):
+    selected.answer('select', 3)
+    assert selected.frame == -1
+
+
+def test_selected_frame_stays_where_others_are_listed(selected):
+    selected.answer('select', 1)
+    selected.list_frames(shown_scene('b'))
+    assert selected.frame == 0
+    selected.list_frames(shown_scene('a'))
+    assert selected.frame == -1
+
+
+def test_more_frames_than_rows(selected, monkeypatch):
+    monkeypatch.setattr(page_module, 'MOST_ROWS', 4)
+    selected.list_frames(shown_scene(*'abcdef'))
+    assert '2 more, to be found by the search' in selected._rows.content
+
+
+def test_frame_that_is_measured_from_is_the_reference(selected):
+    assert selected.reference == ROOT_IS_PARENT
+    selected.answer('select', 1)
+    selected._measure_from_here()
+    selected.answer('select', 2)
+    assert (selected.frame, selected.reference) == (2, 1)
