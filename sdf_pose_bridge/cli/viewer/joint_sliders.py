@@ -35,10 +35,6 @@ class JointRange(NamedTuple):
     is_turn: bool = False
     """Whether it is a whole turn, so that its ends are one position."""
 
-    def clipped(self, position: float) -> float:
-        """Return the nearest position within the limits."""
-        return min(max(position, self.lower), self.upper)
-
 
 def range_of_dof(dof: DegreeOfFreedom) -> JointRange:
     """Return the range of a degree of freedom."""
@@ -77,8 +73,8 @@ class JointSliders:
             move = gui.add_button('Move each joint through its range', color='gray')
             for name, limits in ranges.items():
                 unit, short = self._unit(name), name.rpartition('/')[2]
-                lower, upper, at = (unit.factor * position for position in (
-                    *limits[1:3], limits.clipped(positions.get(name, 0.0))))
+                lower, upper = unit.factor * limits.lower, unit.factor * limits.upper
+                at = min(max(unit.factor * positions.get(name, 0.0), lower), upper)
                 self._sliders[name] = slider = gui.add_slider(
                     printable(short if short_names[short] == 1 else name), lower, upper,
                     max((upper - lower) / 1000.0, 1e-9), at, hint=printable(name), marks=(
