@@ -151,8 +151,16 @@ class Drawing:
         self._axes.batched_wxyzs, self._axes.batched_positions = _places(tree.poses[self.frames])
         for copies, elements in self._copies:
             copies.batched_wxyzs, copies.batched_positions = _places(scene.poses[elements])
-        has_all_lines = 'all lines to parents' not in self._hidden
-        self._lines.points = _lines(tree, self.frames if has_all_lines else _ancestry(tree, frame))
+        children = self.frames.tolist()
+        if 'all lines to parents' in self._hidden:
+            # Those from the frame to its root.
+            children, index = [], frame
+            while index >= 0:
+                children.append(index)
+                index = int(tree.parents[index])
+        self._lines.points = np.array([
+            [shown.pose_of(index)[:3] for index in (tree.parents[child], child)]
+            for child in children if tree.parents[child] != NO_PARENT]).reshape(-1, 2, 3)
         labels: list[tuple[object, ...]] = []
         measured = np.zeros((0, 2, 3))
         self._marker.visible = frame >= 0
@@ -229,18 +237,9 @@ class Drawing:
         copies.on_click(lambda event: self._select(int(frames[event.instance_index or 0])))
 
 
-def _places(poses: PoseArray) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Return quaternions w x y z and positions for viser."""
-    return poses[:, _WXYZ].astype(np.float32), poses[:, :3].astype(np.float32)
-
-
-def _lines(tree: TfTree, shown: NDArray[np.intp]) -> Floats:
-    """Return lines from the parents of frames to the frames, shape (n, 2, 3)."""
-    frames = shown[tree.parents[shown] != NO_PARENT]
-    # The last entry is the root frame, at the index of the root as a parent.
-    origins = np.concatenate([tree.poses[:, :3], np.zeros((1, 3))])
-    assert ROOT_IS_PARENT == -1
-    return np.stack([origins[tree.parents[frames]], origins[frames]], axis=1)
+def _places(poses: PoseArray) -> tuple[Floats, Floats]:
+    """Return quaternions w x y z and positions, as viser takes them."""
+    return poses[:, _WXYZ], poses[:, :3]
 
 
 def _names_of_bodies(shown: ShownScene, surface: Surface) -> list[str]:
@@ -259,15 +258,6 @@ def _last_part(name: str) -> str:
 def _extent_m(*points: Floats) -> float:
     """Return the extent of the root frame and of points, each of shape (..., 3)."""
     return float(np.ptp(bounds_of_points(np.zeros(3), *points), axis=0).max()) or 1.0
-
-
-def _ancestry(tree: TfTree, frame: int) -> NDArray[np.intp]:
-    """Return a frame and its ancestors in TF; empty for -1."""
-    frames = []
-    while frame >= 0:
-        frames.append(frame)
-        frame = int(tree.parents[frame])
-    return np.array(frames, int)
 
 
 def _length_of_axes(tree: TfTree, size_m: float) -> float:

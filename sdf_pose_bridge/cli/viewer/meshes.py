@@ -233,8 +233,7 @@ def _parts(
         points = np.concatenate([points for _, points in surfaces])
         middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     parts = [
-        MeshPart(np.asarray(points - middle, np.float32), np.asarray(mesh.faces, np.uint32),
-                 _rgba(mesh), _glb(mesh, points - middle))
+        MeshPart(points - middle, np.asarray(mesh.faces), _rgba(mesh), _glb(mesh, points - middle))
         for mesh, points in surfaces]
     triangle_count = sum(len(part.faces) for part in parts)
     msg = ''

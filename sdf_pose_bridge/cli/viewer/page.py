@@ -320,7 +320,6 @@ class Page:
             angles = gui.add_dropdown(
                 'angles', tuple(_ANGLES), initial_value=self._units.angle.name)
             dark = gui.add_checkbox('dark background', initial_value=False)
-
         self._events.when(views.on_click, lambda: self._look(views.value))
         self._events.when(opacity.on_update, lambda: setattr(
             self._opacity, 'content', html_of_data('opacity', str(opacity.value))))

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TypeAlias
 
@@ -48,7 +49,7 @@ class PoseEdit:
         self._is_written = False
         self._change: PoseChange | None = None
         self._looked_at: tuple[object, ...] = ()
-        self._doubts: tuple[str, ...] = ()
+        self._notes: tuple[str, ...] = ()
         self._errors: list[str] = []
         self._undone: FileChange | None = None
         # In pixels: with lines of this width, 24 of them react to the pointer.
@@ -123,7 +124,7 @@ class PoseEdit:
         if self.pose is not None and not self._is_written:
             actions |= {'write to file': self._write_pose, 'cancel': lambda: self._take(None)}
         if self._undone is not None:
-            actions['undo the last write'] = self._undo_write
+            actions['undo the last write'] = partial(self._write, self._undone, None)
         return actions
 
     @property
@@ -135,11 +136,11 @@ class PoseEdit:
             text += html_of_difference(
                 self._target[1], self.pose, self._reference, self._units)
         labels = (f'<label data-ask="{label}">{label}</label>' for label in self.actions)
-        errors = html_of_lines('errors', [*self._doubts, *self._errors])
+        errors = html_of_lines('errors', [*self._notes, *self._errors])
         return f'{text}{errors}{"".join(labels)}'
 
-    def _take(self, pose: Pose | None, *doubts: str) -> None:
-        self.pose, self._doubts, self._is_written = pose, doubts, False
+    def _take(self, pose: Pose | None, *notes: str) -> None:
+        self.pose, self._notes, self._is_written = pose, notes, False
         if pose is None:
             self._errors = []
 
@@ -195,17 +196,12 @@ class PoseEdit:
 
     def _write_pose(self) -> None:
         self.look_ahead()
-        if self._change is not None and not self._errors and self._write(self._change.file):
-            self._undone, self._is_written = self._change.file.undone, True
+        if self._change is not None and not self._errors:
+            self._write(self._change.file, self._change.file.undone)
 
-    def _undo_write(self) -> None:
-        if self._undone is not None and self._write(self._undone):
-            self._undone = None
-
-    def _write(self, change: FileChange) -> bool:
-        self._errors = []
+    def _write(self, change: FileChange, undone: FileChange | None) -> None:
         try:
             change.write()
+            self._undone, self._is_written, self._notes = undone, True, ()
         except SdfError as error:
-            self._errors = list(map(str, error.errors))
-        return not self._errors
+            self._notes = tuple(map(str, error.errors))
