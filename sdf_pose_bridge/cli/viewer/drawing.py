@@ -106,7 +106,7 @@ class Drawing:
         bounds = bounds_of_interest(origins, boxes, np.concatenate([
             origins[shown.is_in_robot[elements[self.frames]]],
             boxes[shown.is_in_robot[self._bodies]].mean(axis=1)]))
-        view_m = float(np.linalg.norm(bounds[1] - bounds[0])) or self.size_m
+        view_m = math.dist(*bounds) or self.size_m
         self.axes_length_m = length_m = _length_of_axes(tree, view_m)
         self.bounds = bounds_with_axes(bounds, tree.poses[self.frames], length_m)
         """The lowest and the highest corner of the first view, shape (2, 3)."""
@@ -171,16 +171,16 @@ class Drawing:
                 measured = np.array([[origin[:3], pose[:3]]])
                 length_m = math.dist(origin[:3], pose[:3])
                 labels.append((f'{unit.factor * length_m:.{unit.digits}f} {unit.name}', True,
-                               *measured[0].mean(axis=0).tolist()))
+                               *measured[0].mean(axis=0)))
         self._measured.points = measured
         missing = (element for surface in self._surfaces if surface.reason
                    for element in surface.elements)
         labels += [
-            (f'{_last_part(scene.shapes[element].mesh_uri)}?', True,
-             *scene.poses[element, :3].tolist()) for element in islice(missing, MOST_NAMES)]
+            (f'{_last_part(scene.shapes[element].mesh_uri)}?', True, *scene.poses[element, :3])
+            for element in islice(missing, MOST_NAMES)]
         named = self.frames[:0 if 'all names' in self._hidden else MOST_NAMES].tolist()
         return json.dumps(labels + [
-            (_last_part(tree.frame_ids[index]), index == frame, *tree.poses[index, :3].tolist())
+            (_last_part(tree.frame_ids[index]), index == frame, *tree.poses[index, :3])
             for index in dict.fromkeys((*named, frame)) if index >= 0])
 
     def boxes(self, shown: ShownScene, element: int) -> Floats:

@@ -58,7 +58,7 @@ def html_of_frame(shown: ShownScene, frame: int, reference: int, units: Units) -
         last pose in formats to copy.
     """
     scene, tree, ids = shown.scene, shown.tree, shown.ids
-    element = int(tree.elements[frame])
+    element = shown.element_of(frame)
     rows = [(ids[frame], f'<b>{escaped(ids[frame])}</b> {shown.labels[frame]}')]
     if element >= 0:
         rows += [(text, escaped(text)) for text in (
@@ -103,14 +103,12 @@ def _place(shown: ShownScene, reference: int, frame: int, units: Units) -> tuple
 
 def _relative_to(shown: ShownScene, frame: int, reference: int) -> str:
     """Return the attribute of a pose; empty if SDFormat has no name for the frame."""
-    scene, tree = shown.scene, shown.tree
-    # The root frame, at the end, and an optical frame have no element.
-    element, own = ([*tree.elements.tolist(), -1][index] for index in (reference, frame))
+    element, own, names = shown.element_of(reference), shown.element_of(frame), shown.scene.names
     if element < 0:
         return ''
-    holder = int(scene.parents[own]) if own >= 0 else -1
-    scope = scene.names[holder] + SEPARATOR if holder >= 0 else ''
-    return f' relative_to={quoteattr(scene.names[element].removeprefix(scope))}'
+    holder = int(shown.scene.parents[own]) if own >= 0 else -1
+    scope = names[holder] + SEPARATOR if holder >= 0 else ''
+    return f' relative_to={quoteattr(names[element].removeprefix(scope))}'
 
 
 def html_of_place(shown: ShownScene, frame: int, reference: int, units: Units) -> str:

@@ -255,8 +255,7 @@ def _rgba(mesh: trimesh.Trimesh) -> tuple[float, ...]:
     visual: Any = mesh.visual
     if visual is None or not visual.defined:
         return ()
-    material = getattr(visual, 'material', None)
-    rgba = visual.main_color if material is None else material.main_color
+    rgba = getattr(visual, 'material', visual).main_color
     return tuple((np.asarray(rgba, float)[:4] / 255.0).tolist())
 
 

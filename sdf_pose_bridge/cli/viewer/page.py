@@ -335,9 +335,9 @@ class Page:
         if name in DIRECTIONS:
             view = view_of_bounds(drawing.bounds, DIRECTIONS[name])
         elif name == 'zoom to' and self._selected.frame >= 0:
-            tree, frame = self._shown.tree, self._selected.frame
-            origin, half_m = tree.poses[frame, :3], 3.0 * drawing.axes_length_m
-            boxes = drawing.boxes(self._shown, int(tree.elements[frame]))
+            shown, frame = self._shown, self._selected.frame
+            origin, half_m = shown.tree.poses[frame, :3], 3.0 * drawing.axes_length_m
+            boxes = drawing.boxes(shown, shown.element_of(frame))
             view = view_of_bounds(
                 bounds_of_points(origin - half_m, origin + half_m, boxes),
                 view.position - view.look_at)

@@ -93,7 +93,7 @@ class PoseEdit:
     def look_ahead(self) -> bool:
         """Find the scene with the new pose; return whether this was not known."""
         shown, asked = self._shown, (self.pose, self.pose and self._shown.positions)
-        element = int(shown.tree.elements[self._frame]) if self._frame >= 0 else -1
+        element = shown.element_of(self._frame)
         if element < 0 or self._is_written or asked == self._looked_at:
             return False
         self._looked_at, self._errors = asked, []

@@ -78,6 +78,10 @@ class ShownScene:
         shown.tree = replace(self.tree, poses=poses)
         return shown
 
+    def element_of(self, frame: int) -> int:
+        """Return the element of a frame; -1 for the root frame and for one without an element."""
+        return -1 if frame == ROOT_IS_PARENT else int(self.tree.elements[frame])
+
     def pose_of(self, frame: int) -> Pose:
         """Return the pose of a frame in the root frame, for which ``ROOT_IS_PARENT`` stands."""
         return Pose() if frame == ROOT_IS_PARENT else Pose(*self.tree.poses[frame].tolist())

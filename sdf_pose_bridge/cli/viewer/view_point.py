@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import product
 import math
 from typing import NamedTuple
 
@@ -58,7 +59,7 @@ def bounds_of_interest(origins: Floats, boxes: Floats, robot: Floats) -> Floats:
         origins = np.zeros((1, 3))
     left_out = int(_OUTLIERS * (len(origins) - 1))
     bounds = bounds_of_points(np.sort(origins, axis=0)[[left_out, -1 - left_out]], robot)
-    extent_m = np.linalg.norm(bounds[1] - bounds[0])
+    extent_m = math.dist(*bounds)
     sizes_m, middles = np.linalg.norm(boxes[:, 1] - boxes[:, 0], axis=1), boxes.mean(axis=1)
     is_near = (np.abs(middles - bounds.mean(axis=0)) <= 0.6 * np.ptp(bounds, axis=0) + 1e-6
                + 0.1 * extent_m).all(axis=1)
@@ -92,7 +93,7 @@ def view_of_bounds(bounds: Floats, direction: ArrayLike) -> View:
     backward = np.asarray(direction) / np.linalg.norm(direction)
     right = np.cross((0.0, 0.0, 1.0), backward)
     right /= np.linalg.norm(right)
-    corners = np.array(np.meshgrid(*(bounds - middle).T)).reshape(3, -1).T
+    corners = np.array([*product(*(bounds - middle).T)])
     across = np.abs(corners @ np.array([right, np.cross(backward, right)]).T).max(axis=1)
     distance_m = float((_MARGIN * across / math.tan(0.5 * FIELD_OF_VIEW_RAD)
                         + corners @ backward).max())
@@ -116,8 +117,8 @@ def home_view(bounds: Floats, origins: Floats, boxes: Floats) -> View:
     :param origins: shape (n, 3), the origins of frames.
     :param boxes: shape (m, 2, 3), the lowest and the highest corners of bodies.
     """
-    size_m = np.linalg.norm(bounds[1] - bounds[0])
-    large = boxes[np.linalg.norm(boxes[:, 1] - boxes[:, 0], axis=1) >= 0.5 * size_m]
+    sizes_m = np.linalg.norm(boxes[:, 1] - boxes[:, 0], axis=1)
+    large = boxes[sizes_m >= 0.5 * math.dist(*bounds)]
     seen = origins[_are_inside(bounds, origins)]
     views = [view_of_bounds(bounds, direction) for direction in _HOME_DIRECTIONS]
     return min(views, key=lambda view: int(_are_hidden(
