@@ -104,9 +104,7 @@ def run(options: argparse.Namespace) -> int:
             scene, tf_options_from_arguments(options), 0 if options.output else options.port,
             Units(options.length_unit, options.angle_unit),
             viewer.MeshReader(resource_finder(options.resource_paths, os.environ), process),
-            partial(pose_change, load=load) if options.edit else None,
-            # A page in a file has no switches.
-            viewer.HIDDEN_AT_FIRST - ({'all names'} if options.output else set()))
+            partial(pose_change, load=load) if options.edit else None)
         with contextlib.closing(page):
             for line in page.reasons:
                 print(f'sdf_pose view: {line}', file=sys.stderr)
@@ -123,11 +121,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _viewer() -> ModuleType:
-    """
-    Import the viewer, which other commands do not need.
-
-    :raises CommandError: if a library is missing or too old.
-    """
+    """Import the viewer, which other commands do not need."""
     from importlib.metadata import version
     try:
         for library in LIBRARIES:
@@ -198,12 +192,7 @@ def _scene(
     process: LimitedProcess, options: argparse.Namespace,
     texts: Mapping[str, bytes] | None = None,
 ) -> Scene:
-    """
-    Load the file in another process.
-
-    :param texts: texts to read instead of some files, by their paths.
-    :raises SdfError: if it is not valid, or needs too much time or memory.
-    """
+    """Load the file in another process, with other texts of some files, by their paths."""
     place = Place(options.files[0])
     try:
         return process.call(
@@ -217,11 +206,7 @@ def _scene(
 
 
 def _picture(page: str) -> bytes:
-    """
-    Draw a page by a browser.
-
-    :raises OSError: if there is none, or it does not draw the page.
-    """
+    """Draw a page by a browser; raise an OSError if there is none, or it does not draw."""
     browser = next(filter(None, map(shutil.which, _BROWSERS)), None)
     if browser is None:
         msg = 'a picture needs Chrome or Chromium; a file that ends with .html does not'

@@ -78,12 +78,7 @@ class Mesh(NamedTuple):
 
 
 class MeshReader:
-    """
-    Reads meshes, and keeps them until they are too large together.
-
-    :param finder: finds their files.
-    :param process: reads them.
-    """
+    """Reads meshes, and keeps them until they are too large together."""
 
     def __init__(self, finder: ResourceFinder, process: LimitedProcess) -> None:
         self._finder = finder
@@ -236,7 +231,6 @@ def _parts(
         MeshPart(points - middle, np.asarray(mesh.faces), _rgba(mesh), _glb(mesh, points - middle))
         for mesh, points in surfaces]
     triangle_count = sum(len(part.faces) for part in parts)
-    msg = ''
     if not parts:
         listed = quoted_names(sorted(set(names)), _MOST_LISTED)
         msg = (f'it has no part "{submesh}", but {listed}' if names and submesh
@@ -246,9 +240,9 @@ def _parts(
         msg = f'a coordinate is larger than {_LARGEST_M:g} m'
     elif triangle_count > MOST_TRIANGLES:
         msg = f'it has {triangle_count} triangles, more than {MOST_TRIANGLES}'
-    if msg:
-        raise ValueError(msg)
-    return tuple(parts)
+    else:
+        return tuple(parts)
+    raise ValueError(msg)
 
 
 def _rgba(mesh: trimesh.Trimesh) -> tuple[float, ...]:

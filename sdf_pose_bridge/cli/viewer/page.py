@@ -149,21 +149,19 @@ class Page:
     :param options: the elements that are frames, and the rules for their names.
     :param port: its port, or the next one that is free; 0 for any.
     :param units: the units of poses and sliders at first.
-    :param meshes: reads the meshes.
     :param find_change: finds the change of a file for a pose; None if frames cannot be moved.
-    :param hidden: groups and kinds of frames that are hidden at first.
     :raises SdfError: if the scene has no TF tree, or a model to show does not exist.
     """
 
     def __init__(
         self, scene: Scene, options: TfOptions, port: int, units: Units, meshes: MeshReader,
-        find_change: FindChange | None = None, hidden: Iterable[str] = HIDDEN_AT_FIRST,
+        find_change: FindChange | None = None,
     ) -> None:
         self._options, self._shown = options, ShownScene(scene, options)
         title = printable(Path(scene.path).name)
         self._server, self.address = server_for_its_owner(port, title)
         gui = self._server.gui
-        self._units, self._hidden = units, {*hidden}
+        self._units, self._hidden = units, {*HIDDEN_AT_FIRST}
         self._events, self._meshes = Events(), meshes
         self._errors: Iterable[str] = ()
         gui.set_panel_label(title)
@@ -200,10 +198,14 @@ class Page:
         return self._drawing.reasons
 
     def html(self, title: str) -> str:
-        """Return the scene, without controls, as a page that needs no network."""
+        """Return the scene with all names, without controls, as a page that needs no network."""
+        self._hidden.discard('all names')
+        labels = self._drawing.show(
+            self._shown, ROOT_IS_PARENT, ROOT_IS_PARENT, self._units.length)
         self._data.remove()
-        page: str = self._server.get_scene_serializer().as_html()
-        return page_with_script(page, printable(title), self._names.content + self._labels.content)
+        return page_with_script(
+            self._server.get_scene_serializer().as_html(), printable(title),
+            self._names.content + html_of_data('labels', labels))
 
     def close(self) -> None:
         """End the server."""
