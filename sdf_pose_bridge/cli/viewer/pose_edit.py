@@ -62,8 +62,7 @@ class PoseEdit:
             self._steps = gui.add_dropdown('steps', ('',))
         for control in (self._gizmo, self._steps, *self._numbers):
             events.when(control.on_update)
-        self._units, self._values = Units(), [0.0] * 6
-        self._texts = self._units.texts(Pose())
+        self._values, self._shown_for = [0.0] * 6, (Pose(), Pose(), Units())
 
     def refresh(self, shown: ShownScene, frame: int, reference: int, units: Units) -> None:
         """
@@ -134,7 +133,7 @@ class PoseEdit:
             f'<div>in the file {escaped(str(Path(self._change.file.path).resolve()))}</div>')
         if self.pose is not None and not self._is_written:
             text += html_of_difference(
-                self._target[1], self.pose, self._reference, self._units)
+                self._target[1], self.pose, self._reference, self._shown_for[2])
         labels = (f'<label data-ask="{label}">{label}</label>' for label in self.actions)
         errors = html_of_lines('errors', [*self._notes, *self._errors])
         return f'{text}{errors}{"".join(labels)}'
@@ -148,26 +147,29 @@ class PoseEdit:
         typed = [number.value for number in self._numbers]
         if typed == self._values:
             return
-        units = self._units.of_pose
-        at = relative_pose(self._reference, self._pose)
-        in_si = [number / unit.factor for number, unit in zip(typed, units, strict=True)]
+        reference, pose, units = self._shown_for
+        at = relative_pose(reference, pose)
+        in_si = [number / unit.factor for number, unit in zip(typed, units.of_pose, strict=True)]
         # Those that were not typed keep all their digits.
         values = [exact if number == shown else value for exact, number, shown, value in zip(
             (*at[:3], *rpy_from_quaternion(at[3:])), typed, self._values, in_si, strict=True)]
-        pose = Pose(*(*values[:3], *quaternion_from_rpy(tuple(values[3:]))))
-        self._values, self._texts = typed, self._units.texts(pose)
+        pose = pose_product(
+            reference, Pose(*(*values[:3], *quaternion_from_rpy(tuple(values[3:])))))
+        self._values, self._shown_for = typed, (reference, pose, units)
         doubt = POSE_FORMATS['sdf_rpy'].doubt(in_si)
         self._take(
-            pose_product(self._reference, pose),
-            *[f'{doubt.reason}; did you mean {doubt.likely_unit}?'] if doubt else ())
+            pose, *[f'{doubt.reason}; did you mean {doubt.likely_unit}?'] if doubt else ())
 
     def _take_gizmo(self) -> None:
-        w, x, y, z = self._gizmo.wxyz.tolist()
-        pose = Pose(*(*self._gizmo.position.tolist(), x, y, z, w))
-        if pose != self._placed:
+        if (pose := self._pose_of_gizmo) != self._placed:
             # The gizmo is not placed again: under the pointer it may be elsewhere by now.
             self._placed = pose
             self._take(pose)
+
+    @property
+    def _pose_of_gizmo(self) -> Pose:
+        w, x, y, z = self._gizmo.wxyz.tolist()
+        return Pose(*(*self._gizmo.position.tolist(), x, y, z, w))
 
     def _show(self, units: Units) -> None:
         options = tuple(', '.join(
@@ -184,15 +186,16 @@ class PoseEdit:
         pose = self._pose
         if pose != self._placed:
             self._gizmo.position, self._gizmo.wxyz = pose[:3], (pose.qw, *pose[3:6])
-            self._placed = pose
-        texts = units.texts(relative_pose(self._reference, pose))
-        if texts != self._texts:
-            before, self._values = self._values, [*map(float, texts)]
+            # viser leaves it where it was if it is there but for a rounding error.
+            self._placed = self._pose_of_gizmo
+        shown_for = self._reference, pose, units
+        if shown_for != self._shown_for:
+            before, self._shown_for = self._values, shown_for
+            self._values = [*map(float, units.texts(relative_pose(self._reference, pose)))]
             for number, value, old in zip(self._numbers, self._values, before, strict=True):
                 # Others may have been typed just now.
                 if value != old:
                     number.value = value
-        self._texts, self._units = texts, units
 
     def _write_pose(self) -> None:
         self.look_ahead()
