@@ -220,10 +220,6 @@ _SCRIPT = """<script>(() => {
 
 
 def page_with_script(page: str, title: str, data: str = '') -> str:
-    """
-    Add the style and the script to a page of viser.
-
-    :param data: elements with data for the script.
-    """
+    """Add the style, the script and elements with data for it to a page of viser."""
     added = f'<title>{html.escape(title)}</title>{data}{_STYLE}{_SCRIPT}'
     return page.replace(_TITLE, added, 1)

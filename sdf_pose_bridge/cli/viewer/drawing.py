@@ -59,11 +59,8 @@ class Drawing:
     """
     The nodes that show a scene, until they are removed.
 
-    :param nodes: the nodes of the page.
     :param name: the name of their parent node. It must differ from the previous one, as a browser
         mixes up nodes that are removed and added again at once.
-    :param meshes: reads the meshes.
-    :param shown: the scene.
     :param hidden: the groups and kinds of frames that are not drawn.
     :param hidden_ids: the ids of frames that are not drawn, with all that is in them.
     :param select: called with the clicked frame, an index into the TF tree.

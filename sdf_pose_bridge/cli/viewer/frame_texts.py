@@ -27,11 +27,7 @@ _COPIED = 'display:block;user-select:all;white-space:pre-wrap;overflow-wrap:anyw
 
 
 def escaped(text: str) -> str:
-    """
-    Return a text for HTML.
-
-    :return: the same text without control characters, and without markup.
-    """
+    """Return a text for HTML, without control characters and without markup."""
     return html.escape(printable(text))
 
 
@@ -51,7 +47,6 @@ def html_of_frame(shown: ShownScene, frame: int, reference: int, units: Units) -
     """
     Describe a frame.
 
-    :param frame: index of the frame.
     :param reference: index of another one, or ``ROOT_IS_PARENT`` for the root frame.
     :param units: units of poses to read; poses to copy are in metres and radians.
     :return: names, place in the file, poses in the root, the parent and the other frame, and the

@@ -49,10 +49,8 @@ class JointSliders:
     """
     A folder with a slider for each joint, and buttons that move all of them.
 
-    :param ranges: the range of each joint.
     :param positions: the positions of joints, in radians or metres; other names are ignored, and
         joints without a position start at zero, or at the nearest limit.
-    :param units: the units of the sliders.
     :param order: the place of the folder among others; None for the last one.
     """
 

@@ -136,7 +136,6 @@ def mesh_from_file(path: str, shape: Shape) -> Mesh:
 
     As in Gazebo the unit of a DAE file counts, and the up axes of DAE and glTF files do not.
 
-    :param path: path of its file.
     :param shape: the shape that names it, and a part of it if not all of it is shown.
     :return: its surfaces, or the reason why there are none.
     """

@@ -59,11 +59,7 @@ _EYES, _FOLDS = ('\u25c9', '\u25cb'), ('\u25be', '\u25b8')
 
 
 class SelectedFrame:
-    """
-    The folder with the tree of frames, and the one of the selected frame.
-
-    :param folder: the folder of the selected frame.
-    """
+    """The folder with the tree of frames, and a given one of the selected frame."""
 
     def __init__(
         self, gui: viser.GuiApi, folder: viser.GuiFolderHandle, events: Events,

@@ -32,11 +32,7 @@ _STEPS = (1.0, 10.0, 100.0, 1000.0)
 
 
 class PoseEdit:
-    """
-    The folder that changes the pose of the selected frame, and the gizmo at the frame.
-
-    :param find_change: finds the change of a file.
-    """
+    """The folder that changes the pose of the selected frame, and the gizmo at the frame."""
 
     def __init__(
         self, server: viser.ViserServer, shown: ShownScene, find_change: FindChange,

@@ -63,7 +63,6 @@ def server_for_its_owner(port: int, title: str) -> tuple[viser.ViserServer, str]
     """
     Start a server for this user only, not for other machines, users or pages of other servers.
 
-    :param title: the title of its page.
     :param port: its port, or the next one that is free; 0 for any.
     :return: the server, and the address of its page: with a secret in its path, without which
         requests are rejected.

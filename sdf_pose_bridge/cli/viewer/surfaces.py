@@ -49,11 +49,9 @@ def surfaces_from_scene(
     """
     Choose the surfaces of visuals and collisions.
 
-    :param scene: the scene, loaded with its shapes.
     :param elements: the visuals and collisions to draw.
     :param size_m: extent of the frames; it limits the sides of planes, and the box for an unknown
         mesh is a small part of it.
-    :param meshes: reads meshes.
     :return: the surfaces, and by the reason the elements that cannot be drawn: of each the URI of
         its mesh, empty for another shape.
     """

@@ -75,7 +75,6 @@ def bounds_with_axes(bounds: Floats, poses: PoseArray, length_m: float) -> Float
 
     :param bounds: shape (2, 3): the lowest and the highest corner.
     :param poses: shape (n, 7), the poses of frames.
-    :param length_m: the length of their axes.
     """
     poses = poses[_are_inside(bounds, poses[:, :3])]
     axes = length_m * matrix_from_quaternion(poses[:, 3:])
@@ -101,11 +100,7 @@ def view_of_bounds(bounds: Floats, direction: ArrayLike) -> View:
 
 
 def view_in_window(view: View, aspect: float) -> View:
-    """
-    Move a camera back if a window is narrow, so that it shows as much from left to right.
-
-    :param aspect: the width of the window divided by its height.
-    """
+    """Move a camera back if a window is narrow, so that it shows as much from left to right."""
     return View(view.look_at + (view.position - view.look_at) / min(aspect, 1.0), view.look_at)
 
 

@@ -20,7 +20,6 @@ from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.pose_setting import PoseChange
 from sdf_pose_bridge.sdformat.file_change import FileChange
-from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfOptions
 
 TEXT = """<sdf version="1.11"><model name="m"><link name="l"/></model></sdf>"""
@@ -181,11 +180,3 @@ def test_more_frames_than_rows(selected, monkeypatch):
     monkeypatch.setattr(page_module, 'MOST_ROWS', 4)
     selected.list_frames(shown_scene(*'abcdef'))
     assert '2 more, to be found by the search' in selected._rows.content
-
-
-def test_frame_that_is_measured_from_is_the_reference(selected):
-    assert selected.reference == ROOT_IS_PARENT
-    selected.answer('select', 1)
-    selected._measure_from_here()
-    selected.answer('select', 2)
-    assert (selected.frame, selected.reference) == (2, 1)
