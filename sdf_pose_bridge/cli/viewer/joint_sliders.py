@@ -9,40 +9,18 @@ from collections.abc import Iterator, Mapping
 from functools import partial
 import math
 import time
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import viser
 
 from sdf_pose_bridge.cli.printing import Unit, Units
 from sdf_pose_bridge.cli.viewer.server import Events
+from sdf_pose_bridge.cli.viewer.shown_scene import JointRange
 from sdf_pose_bridge.names import printable
-from sdf_pose_bridge.tf.joint_motion import DegreeOfFreedom
 
-_LARGEST_RANGE = 1000.0
-"""A joint with a wider range counts as one without limits, which the page moves by half a turn or
-half a metre to either side."""
 _STEPS, _STEP_S = 31, 0.05
 """Number and time of the steps in which the page moves a joint through its range."""
-
-
-class JointRange(NamedTuple):
-    """The range of a joint, in radians or metres."""
-
-    is_angle: bool
-    lower: float
-    upper: float
-    is_turn: bool = False
-    """Whether it is a whole turn, so that its ends are one position."""
-
-
-def range_of_dof(dof: DegreeOfFreedom) -> JointRange:
-    """Return the range of a degree of freedom."""
-    is_angle, axis = bool(dof.rad_per_unit), dof.axis
-    if axis.upper - axis.lower >= _LARGEST_RANGE:
-        most = math.pi if is_angle else 0.5
-        return JointRange(is_angle, -most, most, is_turn=is_angle)
-    return JointRange(is_angle, axis.lower, max(axis.lower, axis.upper))
 
 
 class JointSliders:

@@ -7,19 +7,43 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 import copy
 from dataclasses import replace
+import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sdf_pose_bridge.cli.printing import kind_labels_of
-from sdf_pose_bridge.cli.viewer.joint_sliders import JointRange, range_of_dof
 from sdf_pose_bridge.geometry.chains import ends_from_pointers
 from sdf_pose_bridge.geometry.poses import Pose, relative_pose
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.tf.joint_motion import JointMotion
+from sdf_pose_bridge.tf.joint_motion import DegreeOfFreedom, JointMotion
 from sdf_pose_bridge.tf.joint_positions import JointPositions, scene_at_positions
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT, tf_parents_from_scene
 from sdf_pose_bridge.tf.tree import elements_in_model, tf_tree_from_scene, TfOptions
+
+_LARGEST_RANGE = 1000.0
+"""A joint with a wider range counts as one without limits, which the page moves by half a turn or
+half a metre to either side."""
+
+
+class JointRange(NamedTuple):
+    """The range of a joint, in radians or metres."""
+
+    is_angle: bool
+    lower: float
+    upper: float
+    is_turn: bool = False
+    """Whether it is a whole turn, so that its ends are one position."""
+
+
+def range_of_dof(dof: DegreeOfFreedom) -> JointRange:
+    """Return the range of a degree of freedom."""
+    is_angle, axis = bool(dof.rad_per_unit), dof.axis
+    if axis.upper - axis.lower >= _LARGEST_RANGE:
+        most = math.pi if is_angle else 0.5
+        return JointRange(is_angle, -most, most, is_turn=is_angle)
+    return JointRange(is_angle, axis.lower, max(axis.lower, axis.upper))
 
 
 class ShownScene:

@@ -11,8 +11,9 @@ import viser
 
 from sdf_pose_bridge.cli.printing import DEGREES, Units
 from sdf_pose_bridge.cli.viewer import joint_sliders
-from sdf_pose_bridge.cli.viewer.joint_sliders import JointRange, JointSliders, range_of_dof
+from sdf_pose_bridge.cli.viewer.joint_sliders import JointSliders
 from sdf_pose_bridge.cli.viewer.server import Events
+from sdf_pose_bridge.cli.viewer.shown_scene import JointRange, range_of_dof
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.tf.joint_motion import JointMotion
 from sdf_pose_bridge.tf.parents import tf_parents_from_scene
