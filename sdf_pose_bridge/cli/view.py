@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 import contextlib
 from functools import partial
 import importlib
@@ -37,10 +37,9 @@ from sdf_pose_bridge.cli.printing import (
 )
 from sdf_pose_bridge.cli.viewer import LIBRARIES
 from sdf_pose_bridge.errors import FileReadError, LimitError, Place, SdfError
-from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.limited_process import LimitedProcess, ProcessEndedError
 from sdf_pose_bridge.process_limits import FOR_FILES, LimitExceededError
-from sdf_pose_bridge.scene.pose_setting import Measure, pose_change, PoseChange
+from sdf_pose_bridge.scene.pose_setting import pose_change
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.file_watcher import FileWatcher
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
@@ -100,48 +99,32 @@ def run(options: argparse.Namespace) -> int:
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     # It is made before the server starts threads.
     with contextlib.closing(LimitedProcess()) as process:
-        return _shown(viewer, process, options)
-
-
-def _shown(viewer: ModuleType, process: LimitedProcess, options: argparse.Namespace) -> int:
-    path, read_since_ns = options.files[0], time.time_ns()
-    scene = _scene(process, options)
-    print_problems((), scene.warnings, sys.stderr)
-    page = viewer.Page(
-        viewer.ShownScene(scene, tf_options_from_arguments(options)),
-        0 if options.output else options.port, Units(options.length_unit, options.angle_unit),
-        viewer.MeshReader(resource_finder(options.resource_paths, os.environ), process),
-        partial(_set_pose, process, options) if options.edit else None,
-        # A page in a file has no switches.
-        viewer.HIDDEN_AT_FIRST - ({'all names'} if options.output else set()))
-    try:
-        for line in page.reasons:
-            print(f'sdf_pose view: {line}', file=sys.stderr)
-        if options.output is None:
+        load, read_since_ns = partial(_scene, process, options), time.time_ns()
+        scene = load()
+        print_problems((), scene.warnings, sys.stderr)
+        page = viewer.Page(
+            scene, tf_options_from_arguments(options), 0 if options.output else options.port,
+            Units(options.length_unit, options.angle_unit),
+            viewer.MeshReader(resource_finder(options.resource_paths, os.environ), process),
+            partial(pose_change, load=load) if options.edit else None)
+        with contextlib.closing(page):
+            for line in page.reasons:
+                print(f'sdf_pose view: {line}', file=sys.stderr)
+            if options.output is not None:
+                _write(page.html(options.files[0]), options.output)
+                return 0
             _open(page.address, options.port)
             watcher = FileWatcher()
             # The standard input cannot be read again.
-            watcher.watch(() if path == STANDARD_INPUT else scene.files, read_since_ns)
-            _follow(viewer, page, watcher, process, options)
-        else:
-            html = page.html(path)
-            options.output.write_bytes(
-                _picture(html) if options.output.suffix.lower() == '.png' else html.encode())
-    except OSError as error:
-        msg = f'cannot write {options.output}: {error}'
-        raise CommandError(msg) from error
-    finally:
-        page.close()
-    return 0
+            watcher.watch(
+                () if options.files[0] == STANDARD_INPUT else scene.files, read_since_ns)
+            while True:
+                _follow(page, watcher, load)
 
 
 def _viewer() -> ModuleType:
-    """
-    Import the viewer, which other commands do not need.
-
-    :raises CommandError: if a library is missing or too old.
-    """
-    from importlib.metadata import PackageNotFoundError, version
+    """Import the viewer, which other commands do not need."""
+    from importlib.metadata import version
     try:
         for library in LIBRARIES:
             name, oldest = re.split('>=|,', library)[:2]
@@ -150,8 +133,8 @@ def _viewer() -> ModuleType:
                 msg = f'this needs {name} {oldest} or newer and found {found}: {_how_to_install()}'
                 raise CommandError(msg)
         return importlib.import_module('sdf_pose_bridge.cli.viewer.page')
-    except (PackageNotFoundError, ImportError) as error:
-        msg = (f'this needs viser, trimesh and pycollada, and {error.name or error} is missing: '
+    except ImportError as error:
+        msg = (f'this needs viser, trimesh and pycollada, and {error.name} is missing: '
                f'{_how_to_install()}')
         raise CommandError(msg) from None
 
@@ -183,46 +166,35 @@ def _open(address: str, port: int) -> None:
     webbrowser.open(address)
 
 
-def _follow(
-    viewer: ModuleType, page: Any, watcher: FileWatcher, process: LimitedProcess,
-    options: argparse.Namespace,
-) -> None:
-    """Show the file again whenever it or an included file changes; never returns."""
-    while True:
-        page.act(_PERIOD_S)
-        if watcher.has_changed():
-            # Some editors write in steps, and a file that has just changed would be read twice.
-            page.act(_SETTLING_S)
-            read_since_ns = time.time_ns()
-            try:
-                scene = _scene(process, options)
-                watcher.watch(scene.files, read_since_ns)
-                page.show(viewer.ShownScene(scene, tf_options_from_arguments(options)))
-            except SdfError as error:
-                page.show_errors(map(str, error.errors))
+def _follow(page: Any, watcher: FileWatcher, load: Callable[[], Scene]) -> None:
+    """Process requests, and show the file again if it or an included file has changed."""
+    page.act(_PERIOD_S)
+    if not watcher.has_changed():
+        return
+    # Some editors write in steps, and a file that has just changed would be read twice.
+    page.act(_SETTLING_S)
+    read_since_ns = time.time_ns()
+    try:
+        scene = load()
+        watcher.watch(scene.files, read_since_ns)
+        page.show(scene)
+    except SdfError as error:
+        page.show_errors(map(str, error.errors))
 
 
-def _set_pose(
-    process: LimitedProcess, options: argparse.Namespace, scene: Scene, element: int, asked: Pose,
-    measure: Measure, *, dry_run: bool,
-) -> PoseChange:
-    """Find a change of the file as :func:`pose_change` does, and write it unless it is a trial."""
-    change = pose_change(scene, element, asked, measure, partial(_scene, process, options))
-    if not dry_run:
-        change.file.write()
-    return change
+def _write(html: str, path: Path) -> None:
+    try:
+        path.write_bytes(_picture(html) if path.suffix.lower() == '.png' else html.encode())
+    except OSError as error:
+        msg = f'cannot write {path}: {error}'
+        raise CommandError(msg) from error
 
 
 def _scene(
     process: LimitedProcess, options: argparse.Namespace,
     texts: Mapping[str, bytes] | None = None,
 ) -> Scene:
-    """
-    Load the file in another process.
-
-    :param texts: texts to read instead of some files, by their paths.
-    :raises SdfError: if it is not valid, or needs too much time or memory.
-    """
+    """Load the file in another process, with other texts of some files, by their paths."""
     place = Place(options.files[0])
     try:
         return process.call(
@@ -236,11 +208,7 @@ def _scene(
 
 
 def _picture(page: str) -> bytes:
-    """
-    Draw a page by a browser.
-
-    :raises OSError: if there is none, or it does not draw the page.
-    """
+    """Draw a page by a browser; raise an OSError if there is none, or it does not draw."""
     browser = next(filter(None, map(shutil.which, _BROWSERS)), None)
     if browser is None:
         msg = 'a picture needs Chrome or Chromium; a file that ends with .html does not'

@@ -25,7 +25,7 @@ _STYLE = """<style>
   /* A section is folded while its content, which is not its last element, is hidden. */
   .mantine-Paper-root:has(> [aria-hidden=true]:not(:last-child)) {border-width: 1px 0 0}
   .mantine-Paper-root > [aria-hidden=true] + :last-child > div {padding: 4px !important}
-  div:has(> .asked), div:has(> .asked) + * {display: none}
+  .mantine-Paper-root:has([data-strip]) {display: none}
   .over-scene {position: absolute; inset: 0; overflow: hidden; pointer-events: none}
   .axis-cross {position: absolute; right: 8px; top: 8px; width: 60px; stroke-width: 3}
   .labels div {position: absolute; padding: 0 2px; font: 12px/14px sans-serif; white-space: pre;
@@ -47,7 +47,7 @@ _SCRIPT = """<script>(() => {
   window.__THREE_DEVTOOLS__ ??= new EventTarget();
   __THREE_DEVTOOLS__.addEventListener('observe', ({detail: observed}) => {
     if (observed.isScene) observed.onBeforeRender = (renderer, _, used) => {
-      const {frames: names} = namesInScene(), opacity = Number(given('opacity'));
+      const {frames: names} = namesInScene(), opacity = Number(given('opacity', 1));
       observed.traverse(node => {
         // viser has no opacity for bodies with a texture, and makes others anew for it.
         if (node.isInstancedMesh2) {
@@ -108,7 +108,7 @@ _SCRIPT = """<script>(() => {
   };
   // Names at one place are lines of one text; of others, those that would overlap are left out.
   const labelsWithoutOverlaps = canvas => {
-    const seen = JSON.parse(given('labels')).map(([text, isFirst, ...point]) => {
+    const seen = JSON.parse(given('labels', '[]')).map(([text, isFirst, ...point]) => {
       const {depth, x, y} = inPicture(point, canvas);
       return [!isFirst, depth, labelOf([text], Math.round(x), Math.round(y))];
     }).filter(([, depth]) => depth > 0).sort(([a, near], [b, far]) => a - b || near - far);
@@ -124,13 +124,12 @@ _SCRIPT = """<script>(() => {
     }
     return placed;
   };
-  // A folded panel gives nothing; what it gave before stays.
-  const last = {labels: '[]', opacity: '1', names: '{"frames": [], "bodies": []}'};
-  const given = name => (
-    last[name] = document.querySelector(`[data-${name}]`)?.dataset[name] || last[name]);
+  const given = (name, otherwise) =>
+    document.querySelector(`[data-${name}]`)?.dataset[name] ?? otherwise;
   let listed, names;
   const namesInScene = () => {
-    if (given('names') !== listed) [listed, names] = [last.names, JSON.parse(last.names)];
+    const text = given('names', '{"frames": [], "bodies": []}');
+    if (text !== listed) [listed, names] = [text, JSON.parse(text)];
     return names;
   };
   const namesOfFramesAt = (event, box) => {
@@ -188,7 +187,7 @@ _SCRIPT = """<script>(() => {
   strip.className = 'strip';
   let shownInStrip = '';
   new MutationObserver(() => {
-    const text = document.querySelector('[data-strip]')?.dataset.strip ?? shownInStrip;
+    const text = given('strip', shownInStrip);
     if (text === shownInStrip) return;
     shownInStrip = strip.innerHTML = text;
     strip.style.maxWidth = `${document.querySelector('canvas').clientWidth - 16}px`;
@@ -201,7 +200,7 @@ _SCRIPT = """<script>(() => {
     if (event.target.closest('[role=slider], input, textarea')) event.stopPropagation();
   }));
   addEventListener('pointerover', ({target}) => {
-    const path = document.querySelector('[data-path]')?.dataset.path;
+    const path = given('path');
     if (path && target.textContent === document.title) target.title = path;
   });
   addEventListener('click', ({target}) => {
@@ -212,7 +211,7 @@ _SCRIPT = """<script>(() => {
     });
     if (!ask) return;
     // It is typed into a control that is not seen, with a number, as the same text is no change.
-    const input = document.querySelector('div:has(> .asked) + * input');
+    const input = document.querySelector('.mantine-Paper-root:has([data-strip]) input');
     Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, 'value').set.call(
       input, `${performance.now()} ${ask}`);
     input.dispatchEvent(new Event('input', {bubbles: true}));
@@ -221,22 +220,6 @@ _SCRIPT = """<script>(() => {
 
 
 def page_with_script(page: str, title: str, data: str = '') -> str:
-    """
-    Add the style and the script to a page of viser.
-
-    :param data: elements with data for the script.
-    """
+    """Add the style, the script and elements with data for it to a page of viser."""
     added = f'<title>{html.escape(title)}</title>{data}{_STYLE}{_SCRIPT}'
     return page.replace(_TITLE, added, 1)
-
-
-def html_of_data(name: str, value: str) -> str:
-    """Return an element that is not seen, from which the script has a value."""
-    return f'<meta data-{name}="{html.escape(value)}">'
-
-
-def html_of_copy_button(text: str) -> str:
-    """Return a button that copies a text."""
-    return (f'<button data-copy="{html.escape(text)}" style="float:right;clear:right;'
-            f'padding:0 4px;margin-left:4px;font-size:0.85em;line-height:1.3;cursor:pointer;'
-            f'border:1px solid;border-radius:3px;opacity:0.6">copy</button>')

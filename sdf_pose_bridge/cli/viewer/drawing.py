@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from itertools import islice
 import json
 import math
@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 import viser
 
-from sdf_pose_bridge.cli.printing import kind_labels_of, Unit
+from sdf_pose_bridge.cli.printing import Unit
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
-from sdf_pose_bridge.cli.viewer.shown_scene import PosedScene, ShownScene
+from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.cli.viewer.surfaces import (
     boxes_of_surfaces,
     lines_from_not_drawn,
@@ -25,14 +25,14 @@ from sdf_pose_bridge.cli.viewer.surfaces import (
 )
 from sdf_pose_bridge.cli.viewer.view_point import (
     bounds_of_interest,
+    bounds_of_points,
     bounds_with_axes,
     grid_spacing_m,
     home_view,
 )
-from sdf_pose_bridge.geometry.poses import Pose, PoseArray
+from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.names import printable, SEPARATOR, shortened
-from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
@@ -59,12 +59,8 @@ class Drawing:
     """
     The nodes that show a scene, until they are removed.
 
-    :param nodes: the nodes of the page.
     :param name: the name of their parent node. It must differ from the previous one, as a browser
         mixes up nodes that are removed and added again at once.
-    :param meshes: reads the meshes.
-    :param shown: the scene.
-    :param posed: the same at the positions of its joints.
     :param hidden: the groups and kinds of frames that are not drawn.
     :param hidden_ids: the ids of frames that are not drawn, with all that is in them.
     :param select: called with the clicked frame, an index into the TF tree.
@@ -72,141 +68,124 @@ class Drawing:
 
     def __init__(
         self, nodes: viser.SceneApi, name: str, meshes: MeshReader, shown: ShownScene,
-        posed: PosedScene, hidden: set[str], hidden_ids: set[str], select: Callable[[int], None],
+        hidden: set[str], hidden_ids: set[str], select: Callable[[int], None],
     ) -> None:
-        scene, tree = posed
+        scene, tree = shown.scene, shown.tree
         self._nodes, self._name, self._select = nodes, name, select
         self._node = nodes.add_frame(name, show_axes=False)
-        self._has_all_lines = 'all lines to parents' not in hidden
-        self._has_all_names = 'all names' not in hidden
-        is_hidden = np.array([frame_id in hidden_ids for frame_id in tree.frame_ids], bool)
-        is_shown = shown.is_shown(tree.elements[is_hidden].tolist())
+        self._hidden = hidden
+        ids, elements = np.array(tree.frame_ids, object), tree.elements
+        is_hidden = np.isin(ids, [*hidden_ids])
+        is_shown = shown.is_in_model & ~shown.is_in(elements[is_hidden].tolist())
         # An optical frame is shown with its parent.
-        elements = np.where(
-            tree.elements < 0, tree.elements[np.maximum(tree.parents, 0)], tree.elements)
-        self.frames = np.array([
-            frame for frame, label in enumerate(kind_labels_of(scene, tree))
-            if label not in hidden and is_shown[elements[frame]]
-            and not is_hidden[frame]], int)
+        elements = np.where(elements < 0, elements[np.maximum(tree.parents, 0)], elements)
+        self.frames = np.flatnonzero(
+            is_shown[elements] & ~np.isin(shown.labels, [*hidden]) & ~is_hidden)
         """The frames that are drawn, indices into the TF tree."""
-        origins = tree.poses[:, :3]
         bodies = [element for element in scene.shapes if is_shown[element]
                   and f'{Kind(scene.kinds[element]).label}s' not in hidden]
-        extent_m = float(np.ptp(np.concatenate(
-            [origins, scene.poses[bodies, :3], np.zeros((1, 3))]), axis=0).max()) or 1.0
-        self._surfaces, not_drawn = surfaces_from_scene(scene, bodies, extent_m, meshes)
+        origins = tree.poses[:, :3]
+        self._surfaces, not_drawn = surfaces_from_scene(
+            scene, bodies, _extent_m(origins, scene.poses[bodies, :3]), meshes)
         self.reasons = lines_from_not_drawn(not_drawn)
         """Lines that say which visuals and collisions cannot be drawn."""
         self.names = json.dumps({
-            'frames': [printable(tree.frame_ids[frame]) for frame in self.frames],
-            'bodies': [_names_of_bodies(posed, surface) for surface in self._surfaces]})
+            'frames': [printable(ids[frame]) for frame in self.frames],
+            'bodies': [_names_of_bodies(shown, surface) for surface in self._surfaces]})
         """The names that the page shows at the pointer: those of all axes, and of the copies of
         each surface, in the order of the nodes."""
-        self._missing = _names_of_missing_meshes(scene, self._surfaces)
         self._bodies = np.array(
             [element for surface in self._surfaces for element in surface.elements], int)
         boxes = boxes_of_surfaces(scene, self._surfaces)
-        self.size_m = float(np.ptp(np.concatenate(
-            [origins, boxes.reshape(-1, 3), np.zeros((1, 3))]), axis=0).max()) or 1.0
+        self.size_m = _extent_m(origins, boxes)
         """The extent of everything."""
-        bounds = bounds_of_interest(origins[self.frames], boxes, np.concatenate([
-            origins[self.frames][shown.is_in_robot[elements[self.frames]]],
+        origins = origins[self.frames]
+        bounds = bounds_of_interest(origins, boxes, np.concatenate([
+            origins[shown.is_in_robot[elements[self.frames]]],
             boxes[shown.is_in_robot[self._bodies]].mean(axis=1)]))
-        view_m = float(np.linalg.norm(bounds[1] - bounds[0])) or self.size_m
+        view_m = math.dist(*bounds) or self.size_m
         self.axes_length_m = length_m = _length_of_axes(tree, view_m)
         self.bounds = bounds_with_axes(bounds, tree.poses[self.frames], length_m)
         """The lowest and the highest corner of the first view, shape (2, 3)."""
-        self.home = home_view(self.bounds, origins[self.frames], boxes)
+        self.home = home_view(self.bounds, origins, boxes)
         """The first view."""
         sizes_m = np.linalg.norm(boxes[:, 1] - boxes[:, 0], axis=1)
-        self._add_surroundings(
-            view_m, boxes[sizes_m <= view_m, 0, 2].min(initial=0.0),
-            has_grid='grid' not in hidden)
+        self._add_surroundings(view_m, boxes[sizes_m <= view_m, 0, 2].min(initial=0.0))
         self._marker = nodes.add_frame(
             f'{name}/selected', axes_length=2.0 * length_m, axes_radius=0.06 * length_m,
             visible=False)
-        self._lines = nodes.add_line_segments(
-            f'{name}/lines to parents', np.zeros((0, 2, 3)), _LINE_COLOR, thickness=2.0,
-            thickness_units='screen')
-        self._measured = nodes.add_line_segments(
-            f'{name}/measured', np.zeros((0, 2, 3)), _MEASURED_COLOR, thickness=3.0,
-            thickness_units='screen')
+        self._lines, self._measured = (
+            nodes.add_line_segments(
+                f'{name}/{lines}', np.zeros((0, 2, 3)), color, thickness=width,
+                thickness_units='screen')
+            for lines, color, width in (
+                ('lines to parents', _LINE_COLOR, 2.0), ('measured', _MEASURED_COLOR, 3.0)))
         self._axes = nodes.add_batched_axes(
             f'{name}/frames', *_places(tree.poses[self.frames]), axes_length=length_m,
             axes_radius=0.035 * length_m)
         self._select_by_click(self._axes, self.frames)
-        self._distances: dict[str, Floats] = {}
         self._copies = [
-            (self._add_surface(number, surface, posed), surface.elements)
+            (self._add_surface(number, surface, shown), surface.elements)
             for number, surface in enumerate(self._surfaces)]
 
     def remove(self) -> None:
         """Remove the nodes."""
         self._node.remove()
 
-    def place(self, posed: PosedScene) -> None:
-        """Move the drawing to other positions of joints."""
-        scene, tree = posed
+    def show(self, shown: ShownScene, frame: int, reference: int, unit: Unit) -> str:
+        """
+        Show other positions of joints, larger axes for a frame, and lines to its ancestors.
+
+        :param frame: its index, or -1 for none.
+        :param reference: index of another one, to which there is a line; ``ROOT_IS_PARENT`` for
+            no line.
+        :param unit: the unit of the length of this line.
+        :return: in JSON, for each name of a frame or a missing mesh, and for the length of the
+            line, its text, whether names do not cover it, and x, y and z of the point that it is
+            right of and below.
+        """
+        scene, tree = shown.scene, shown.tree
         self._axes.batched_wxyzs, self._axes.batched_positions = _places(tree.poses[self.frames])
         for copies, elements in self._copies:
             copies.batched_wxyzs, copies.batched_positions = _places(scene.poses[elements])
-
-    def mark(
-        self, tree: TfTree, frame: int, pose: Pose | None, reference: Pose | None, unit: Unit,
-    ) -> None:
-        """
-        Show larger axes for a frame, and lines to its ancestors, or all lines if they are on.
-
-        :param frame: its index, or -1 for none.
-        :param pose: the pose of the axes in the root frame.
-        :param reference: the pose of a frame to which there is a line.
-        :param unit: the unit of the length of this line.
-        """
-        ends = np.array([end[:3] for end in (reference, pose) if end is not None])
-        is_measured = len(ends) == 2
-        self._measured.points = ends[None] if is_measured else np.zeros((0, 2, 3))
-        self._distances = {
-            f'{unit.factor * math.dist(*ends):.{unit.digits}f} {unit.name}': ends.mean(axis=0),
-        } if is_measured else {}
-        self._marker.visible = pose is not None
-        if pose is not None:
+        children = self.frames.tolist()
+        if 'all lines to parents' in self._hidden:
+            # Those from the frame to its root.
+            children, index = [], frame
+            while index >= 0:
+                children.append(index)
+                index = int(tree.parents[index])
+        self._lines.points = np.array([
+            [shown.pose_of(index)[:3] for index in (tree.parents[child], child)]
+            for child in children if tree.parents[child] != NO_PARENT]).reshape(-1, 2, 3)
+        labels: list[tuple[object, ...]] = []
+        measured = np.zeros((0, 2, 3))
+        self._marker.visible = frame >= 0
+        if frame >= 0:
+            pose, origin = shown.pose_of(frame), shown.pose_of(reference)
             self._marker.position, self._marker.wxyz = pose[:3], (pose.qw, *pose[3:6])
-        self._lines.points = _lines(
-            tree, self.frames if self._has_all_lines else _ancestry(tree, frame))
+            if reference != ROOT_IS_PARENT:
+                measured = np.array([[origin[:3], pose[:3]]])
+                length_m = math.dist(origin[:3], pose[:3])
+                labels.append((f'{unit.factor * length_m:.{unit.digits}f} {unit.name}', True,
+                               *measured[0].mean(axis=0)))
+        self._measured.points = measured
+        missing = (element for surface in self._surfaces if surface.reason
+                   for element in surface.elements)
+        labels += [
+            (f'{_last_part(scene.shapes[element].mesh_uri)}?', True, *scene.poses[element, :3])
+            for element in islice(missing, MOST_NAMES)]
+        named = self.frames[:0 if 'all names' in self._hidden else MOST_NAMES].tolist()
+        return json.dumps(labels + [
+            (_last_part(tree.frame_ids[index]), index == frame, *tree.poses[index, :3])
+            for index in dict.fromkeys((*named, frame)) if index >= 0])
 
-    def labels(self, posed: PosedScene, frame: int, pose: Pose | None) -> str:
-        """
-        Return names of frames, of missing meshes, and a distance.
+    def boxes(self, shown: ShownScene, element: int) -> Floats:
+        """Return the boxes around the visuals and collisions in an element, shape (n, 2, 3)."""
+        is_in = shown.is_in([element])[self._bodies]
+        return np.asarray(boxes_of_surfaces(shown.scene, self._surfaces)[is_in])
 
-        :param frame: index of a frame whose name is always shown, or -1.
-        :param pose: the pose of this frame in the root frame, if it is not the one in the scene.
-        :return: in JSON, for each its text, whether names do not cover it, and x, y and z of the
-            point that it is right of and below.
-        """
-        scene, tree = posed
-        frames = self.frames[:MOST_NAMES].tolist() if self._has_all_names else []
-        if frame >= 0 and frame not in frames:
-            frames.append(frame)
-        origins = tree.poses[:, :3].copy()
-        if pose is not None:
-            origins[frame] = pose[:3]
-        return json.dumps([
-            *([text, True, *point.tolist()] for text, point in self._distances.items()),
-            *([name, True, *scene.poses[element, :3].tolist()]
-              for element, name in self._missing.items()),
-            *([printable(shortened(tree.frame_ids[index].rpartition('/')[2])), index == frame,
-               *origins[index].tolist()] for index in frames)])
-
-    def boxes(self, posed: PosedScene, is_in: NDArray[np.bool_]) -> Floats:
-        """
-        Return the boxes around visuals and collisions, shape (n, 2, 3).
-
-        :param is_in: whether each element of the scene counts.
-        """
-        boxes: Floats = boxes_of_surfaces(posed.scene, self._surfaces)[is_in[self._bodies]]
-        return boxes
-
-    def _add_surroundings(self, view_m: float, ground_m: float, *, has_grid: bool) -> None:
+    def _add_surroundings(self, view_m: float, ground_m: float) -> None:
         """Add light from above and from two sides, and a grid on the ground at a height."""
         nodes, name = self._nodes, self._name
         nodes.add_light_hemisphere(
@@ -216,7 +195,7 @@ class Drawing:
             nodes.add_light_point(
                 f'{name}/sun {number}', intensity=intensity, decay=0.0,
                 position=tuple(100.0 * self.size_m * np.array(direction)))
-        if not has_grid:
+        if 'grid' in self._hidden:
             return
         spacing_m = grid_spacing_m(view_m)
         middle = np.round(self.bounds.mean(axis=0)[:2] / spacing_m) * spacing_m
@@ -232,14 +211,13 @@ class Drawing:
             f'{name}/grid spacing', f'grid {spacing_m:g} m', font_screen_scale=0.8,
             position=(*(middle + spacing_m * np.round(to_camera / spacing_m)), height_m))
 
-    def _add_surface(self, number: int, surface: Surface, posed: PosedScene) -> Any:
+    def _add_surface(self, number: int, surface: Surface, shown: ShownScene) -> Any:
         is_collision = surface.kind == Kind.COLLISION
         name = f'{self._name}/{surface.kind.label}s/{number}'
-        places = _places(posed.scene.poses[surface.elements])
+        places = _places(shown.scene.poses[surface.elements])
         if surface.part.glb:
             return self._nodes.add_batched_glb(
-                name, surface.part.glb, *places, batched_scales=surface.scales, lod='off',
-                cast_shadow=False, receive_shadow=False)
+                name, surface.part.glb, *places, batched_scales=surface.scales, lod='off')
         rgba = np.clip(surface.rgba, 0.0, 1.0)
         if is_collision:
             rgba[:] = _COLLISION_RGBA
@@ -249,52 +227,34 @@ class Drawing:
             batched_colors=np.round(255.0 * rgba[:, :3]).astype(np.uint8),
             batched_opacities=rgba[:, 3] if (rgba[:, 3] < 1.0).any() else None,
             lod='off', wireframe=is_collision, flat_shading=not is_collision, side='double')
-        self._select_by_click(copies, posed.tree.nearest_frames[surface.elements])
+        self._select_by_click(copies, shown.tree.nearest_frames[surface.elements])
         return copies
 
     def _select_by_click(self, copies: Any, frames: NDArray[Any]) -> None:
         copies.on_click(lambda event: self._select(int(frames[event.instance_index or 0])))
 
 
-def _places(poses: PoseArray) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Return quaternions w x y z and positions for viser."""
-    return poses[:, _WXYZ].astype(np.float32), poses[:, :3].astype(np.float32)
+def _places(poses: PoseArray) -> tuple[Floats, Floats]:
+    """Return quaternions w x y z and positions, as viser takes them."""
+    return poses[:, _WXYZ], poses[:, :3]
 
 
-def _lines(tree: TfTree, shown: NDArray[np.intp]) -> Floats:
-    """Return lines from the parents of frames to the frames, shape (n, 2, 3)."""
-    frames = shown[tree.parents[shown] != NO_PARENT]
-    # The last entry is the root frame, at the index of the root as a parent.
-    origins = np.concatenate([tree.poses[:, :3], np.zeros((1, 3))])
-    assert ROOT_IS_PARENT == -1
-    return np.stack([origins[tree.parents[frames]], origins[frames]], axis=1)
-
-
-def _names_of_bodies(posed: PosedScene, surface: Surface) -> list[str]:
+def _names_of_bodies(shown: ShownScene, surface: Surface) -> list[str]:
     """Return the names of the copies of a surface: the frame of each, then the body in it."""
-    scene, tree = posed
-    ids = (*tree.frame_ids, tree.root_frame)
-    return [printable(
-        f'{ids[frame]}, {surface.kind.label} {scene.names[element].rpartition(SEPARATOR)[2]}')
-        for element, frame in zip(
-            surface.elements, tree.nearest_frames[surface.elements].tolist(), strict=True)]
+    ids, names, frames = shown.ids, shown.scene.names, shown.tree.nearest_frames
+    return [
+        printable(f'{ids[frames[element]]}, {surface.kind.label} '
+                  f'{names[element].rpartition(SEPARATOR)[2]}')
+        for element in surface.elements]
 
 
-def _names_of_missing_meshes(scene: Scene, surfaces: Sequence[Surface]) -> dict[int, str]:
-    """Return the names of the files of meshes that are not drawn, by their elements."""
-    missing = (element for surface in surfaces if surface.reason for element in surface.elements)
-    return {
-        element: f'{printable(shortened(scene.shapes[element].mesh_uri.rpartition("/")[2]))}?'
-        for element in islice(missing, MOST_NAMES)}
+def _last_part(name: str) -> str:
+    return printable(shortened(name.rpartition('/')[2]))
 
 
-def _ancestry(tree: TfTree, frame: int) -> NDArray[np.intp]:
-    """Return a frame and its ancestors in TF; empty for -1."""
-    frames = []
-    while frame >= 0:
-        frames.append(frame)
-        frame = int(tree.parents[frame])
-    return np.array(frames, int)
+def _extent_m(*points: Floats) -> float:
+    """Return the extent of the root frame and of points, each of shape (..., 3)."""
+    return float(np.ptp(bounds_of_points(np.zeros(3), *points), axis=0).max()) or 1.0
 
 
 def _length_of_axes(tree: TfTree, size_m: float) -> float:

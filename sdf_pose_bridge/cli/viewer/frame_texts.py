@@ -11,12 +11,11 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from sdf_pose_bridge.cli.printing import kind_labels_of, POSE_LABELS, Units
-from sdf_pose_bridge.cli.viewer.browser_script import html_of_copy_button
+from sdf_pose_bridge.cli.printing import POSE_LABELS, Units
+from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.geometry.formats import converted_poses
 from sdf_pose_bridge.geometry.poses import Pose, relative_pose
 from sdf_pose_bridge.names import printable, quoted_names, SEPARATOR
-from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.include.merge import is_name_of_proxy
 from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
@@ -28,49 +27,50 @@ _COPIED = 'display:block;user-select:all;white-space:pre-wrap;overflow-wrap:anyw
 
 
 def escaped(text: str) -> str:
-    """
-    Return a text for HTML.
-
-    :return: the same text without control characters, and without markup.
-    """
+    """Return a text for HTML, without control characters and without markup."""
     return html.escape(printable(text))
 
 
-def html_of_frame(scene: Scene, tree: TfTree, frame: int, reference: int, units: Units) -> str:
+def html_of_data(name: str, value: str) -> str:
+    """Return an element that is not seen, from which the script has a value."""
+    return f'<meta data-{name}="{html.escape(value)}">'
+
+
+def html_of_copy_button(text: str) -> str:
+    """Return a button that copies a text."""
+    return (f'<button data-copy="{html.escape(text)}" style="float:right;clear:right;'
+            f'padding:0 4px;margin-left:4px;font-size:0.85em;line-height:1.3;cursor:pointer;'
+            f'border:1px solid;border-radius:3px;opacity:0.6">copy</button>')
+
+
+def html_of_frame(shown: ShownScene, frame: int, reference: int, units: Units) -> str:
     """
     Describe a frame.
 
-    :param frame: index of the frame.
     :param reference: index of another one, or ``ROOT_IS_PARENT`` for the root frame.
     :param units: units of poses to read; poses to copy are in metres and radians.
     :return: names, place in the file, poses in the root, the parent and the other frame, and the
         last pose in formats to copy.
     """
-    element, parent = int(tree.elements[frame]), int(tree.parents[frame])
-    kind = kind_labels_of(scene, tree)[frame]
-    rows = [(tree.frame_ids[frame], f'<b>{escaped(tree.frame_ids[frame])}</b> {kind}')]
+    scene, tree, ids = shown.scene, shown.tree, shown.ids
+    element = shown.element_of(frame)
+    rows = [(ids[frame], f'<b>{escaped(ids[frame])}</b> {shown.labels[frame]}')]
     if element >= 0:
         rows += [(text, escaped(text)) for text in (
             scene.names[element], str(scene.place(element)))]
     lines = [html_of_copy_button(printable(text)) + row for text, row in rows]
-    # The last entries are the root frame, at the index of the root as a parent.
-    assert ROOT_IS_PARENT == -1
-    ids = (*tree.frame_ids, tree.root_frame)
-    poses = [*(Pose(*pose) for pose in tree.poses.tolist()), Pose()]
-    for other in dict.fromkeys((reference, ROOT_IS_PARENT, parent)):
-        if other not in (NO_PARENT, frame):
-            texts = units.texts(relative_pose(poses[other], poses[frame]))
-            lines.append(
-                f'in <b>{escaped(ids[other])}</b><br>xyz {" ".join(texts[:3])} {units.length.name}'
-                f'<br>rpy {" ".join(texts[3:])} {units.angle.name}')
-    pose = relative_pose(poses[reference], poses[frame])
+    lines += [
+        f'in <b>{escaped(ids[other])}</b><br>{"<br>".join(_place(shown, other, frame, units))}'
+        for other in dict.fromkeys((reference, ROOT_IS_PARENT, int(tree.parents[frame])))
+        if other not in (NO_PARENT, frame)]
+    pose = shown.pose_in(reference, frame)
     # Smaller differences are rounding errors. Adding zero removes negative zeros.
     rpy, quat, franka = (
         (converted_poses([pose], 'sdf_quat_xyzw', name)[0].round(12) + 0.0).tolist()
         for name in ('sdf_rpy', 'sdf_quat_xyzw', 'franka_matrix'))
     arguments = zip(('x', 'y', 'z', 'qx', 'qy', 'qz', 'qw'), quat, strict=True)
     copied = {
-        'SDF': f'<pose{_relative_to(scene, tree, frame, reference)}>{_text(rpy)}</pose>',
+        'SDF': f'<pose{_relative_to(shown, frame, reference)}>{_text(rpy)}</pose>',
         'static_transform_publisher': ' '.join([
             *(f'--{name} {value!r}' for name, value in arguments),
             '--frame-id', shlex.quote(ids[reference]),
@@ -90,22 +90,26 @@ def _text(values: Sequence[float]) -> str:
     return ' '.join(map(repr, values))
 
 
-def _relative_to(scene: Scene, tree: TfTree, frame: int, reference: int) -> str:
+def _place(shown: ShownScene, reference: int, frame: int, units: Units) -> tuple[str, str]:
+    texts = units.texts(shown.pose_in(reference, frame))
+    return (f'xyz {" ".join(texts[:3])} {units.length.name}',
+            f'rpy {" ".join(texts[3:])} {units.angle.name}')
+
+
+def _relative_to(shown: ShownScene, frame: int, reference: int) -> str:
     """Return the attribute of a pose; empty if SDFormat has no name for the frame."""
-    element = int(tree.elements[reference]) if reference != ROOT_IS_PARENT else -1
+    element, own, names = shown.element_of(reference), shown.element_of(frame), shown.scene.names
     if element < 0:
         return ''
-    name = scene.names[element]
-    holder = int(scene.parents[tree.elements[frame]]) if tree.elements[frame] >= 0 else -1
-    scope = scene.names[holder] + SEPARATOR if holder >= 0 else ''
-    return f' relative_to={quoteattr(name.removeprefix(scope))}'
+    holder = int(shown.scene.parents[own]) if own >= 0 else -1
+    scope = names[holder] + SEPARATOR if holder >= 0 else ''
+    return f' relative_to={quoteattr(names[element].removeprefix(scope))}'
 
 
-def html_of_place(frame_id: str, reference_id: str, pose: Pose, units: Units) -> str:
+def html_of_place(shown: ShownScene, frame: int, reference: int, units: Units) -> str:
     """Write the pose of a frame in another one in a line."""
-    texts = units.texts(pose)
-    return (f'<b>{escaped(frame_id)}</b> in {escaped(reference_id)}: xyz {" ".join(texts[:3])} '
-            f'{units.length.name}, rpy {" ".join(texts[3:])} {units.angle.name}')
+    return (f'<b>{escaped(shown.ids[frame])}</b> in {escaped(shown.ids[reference])}: '
+            f'{", ".join(_place(shown, reference, frame, units))}')
 
 
 def html_of_moved(old: TfTree, new: TfTree, frame: int) -> str:

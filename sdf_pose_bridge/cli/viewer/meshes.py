@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from functools import partial
 import io
 import os
 from pathlib import Path
@@ -79,17 +78,12 @@ class Mesh(NamedTuple):
 
 
 class MeshReader:
-    """
-    Reads meshes, and keeps them until they are too large together.
-
-    :param finder: finds their files.
-    :param process: reads them.
-    """
+    """Reads meshes, and keeps them until they are too large together."""
 
     def __init__(self, finder: ResourceFinder, process: LimitedProcess) -> None:
         self._finder = finder
         self._process = process
-        self._kept: dict[tuple[str, str, bool, int, int], Mesh] = {}
+        self._kept: dict[tuple[str, Shape, int, int], Mesh] = {}
         self._kept_bytes = 0
 
     def mesh(self, shape: Shape, file: str, size_m: float) -> Mesh:
@@ -100,22 +94,34 @@ class MeshReader:
         :param size_m: extent of the scene; it limits the sides of planes.
         :return: its surfaces, or a small box if they are unknown.
         """
-        if shape.type != 'mesh':
-            return _mesh_of_shape(shape, 2.0 * size_m)
-        mesh = self._mesh_of_file(shape, file)
-        if not mesh.reason:
-            return mesh
-        box = trimesh.creation.box(np.full(3, 0.03 * size_m))
-        return Mesh((MeshPart(box.vertices, box.faces, _MISSING),), mesh.reason)
+        if shape.type == 'mesh':
+            mesh = self._mesh_of_file(shape, file)
+            box = trimesh.creation.box(np.full(3, 0.03 * size_m))
+            return mesh if not mesh.reason else mesh._replace(
+                parts=(MeshPart(box.vertices, box.faces, _MISSING),))
+        if shape.reason_without_surface:
+            return Mesh(reason=shape.reason_without_surface)
+        if shape.type == 'plane':
+            # Planes are often much larger than the bodies on them.
+            shape = shape._replace(
+                sizes_m=tuple(min(side_m, 2.0 * size_m) for side_m in shape.sizes_m))
+        return Mesh((MeshPart(*shape.surface),))
 
     def _mesh_of_file(self, shape: Shape, file: str) -> Mesh:
         path = self._finder.file_from_uri(shape.mesh_uri, file)
         if path is None:
             return Mesh(reason=self._finder.reason_not_found(shape.mesh_uri, file))
         status = os.stat(path)  # noqa: PTH116
-        key = path, shape.submesh, shape.is_centered, status.st_mtime_ns, status.st_size
+        key = path, shape, status.st_mtime_ns, status.st_size
         if key not in self._kept:
-            mesh = self._read(path, shape.submesh, is_centered=shape.is_centered)
+            try:
+                mesh = self._process.call(ALLOWANCE, mesh_from_file, path, shape)
+            except LimitExceededError as error:
+                mesh = Mesh(reason=f'it needs {error} to be read')
+            except ProcessEndedError as error:
+                mesh = Mesh(reason=str(error))
+            except MemoryError:
+                mesh = Mesh(reason='there is not enough memory to read it')
             self._kept_bytes += mesh.size
             if self._kept_bytes > MOST_BYTES_KEPT:
                 self._kept.clear()
@@ -123,40 +129,18 @@ class MeshReader:
             self._kept[key] = mesh
         return self._kept[key]
 
-    def _read(self, path: str, submesh: str, *, is_centered: bool) -> Mesh:
-        try:
-            return self._process.call(
-                ALLOWANCE, partial(mesh_from_file, is_centered=is_centered), path, submesh)
-        except LimitExceededError as error:
-            return Mesh(reason=f'it needs {error} to be read')
-        except ProcessEndedError as error:
-            return Mesh(reason=str(error))
-        except MemoryError:
-            return Mesh(reason='there is not enough memory to read it')
 
-
-def _mesh_of_shape(shape: Shape, largest_m: float) -> Mesh:
-    if shape.reason_without_surface:
-        return Mesh(reason=shape.reason_without_surface)
-    if shape.type == 'plane':
-        # Planes are often much larger than the bodies on them.
-        shape = shape._replace(sizes_m=tuple(min(size_m, largest_m) for size_m in shape.sizes_m))
-    return Mesh((MeshPart(*shape.surface),))
-
-
-def mesh_from_file(path: str, submesh: str, *, is_centered: bool = False) -> Mesh:
+def mesh_from_file(path: str, shape: Shape) -> Mesh:
     """
     Read a mesh.
 
     As in Gazebo the unit of a DAE file counts, and the up axes of DAE and glTF files do not.
 
-    :param path: path of its file.
-    :param submesh: the name of a part; empty for all of it.
-    :param is_centered: whether the middle of its box is put at the origin.
+    :param shape: the shape that names it, and a part of it if not all of it is shown.
     :return: its surfaces, or the reason why there are none.
     """
     try:
-        return Mesh(_parts(*_scene_from_file(path, submesh), submesh, is_centered=is_centered))
+        return Mesh(_parts(*_scene_from_file(path, shape.submesh), shape))
     except SdfError as error:
         return Mesh(reason=error.message)
     except MemoryError:
@@ -228,10 +212,9 @@ def _names_of_parts(
 
 
 def _parts(
-    scene: trimesh.Scene, names: Sequence[str], submesh: str, *, is_centered: bool,
+    scene: trimesh.Scene, names: Sequence[str], shape: Shape,
 ) -> tuple[MeshPart, ...]:
-    """Find the surfaces of a mesh, or of its parts with this name."""
-    surfaces = []
+    surfaces, submesh = [], shape.submesh
     for node, part_name in zip(scene.graph.nodes_geometry, names, strict=True):
         matrix, name = scene.graph[node]
         mesh = scene.geometry[name]
@@ -240,15 +223,13 @@ def _parts(
             unit_m = trimesh.units.unit_conversion(mesh.units or 'meters', 'meters')
             surfaces.append((mesh, unit_m * trimesh.transform_points(mesh.vertices, matrix)))
     middle = np.zeros(3)
-    if is_centered and surfaces:
+    if shape.is_centered and surfaces:
         points = np.concatenate([points for _, points in surfaces])
         middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     parts = [
-        MeshPart(np.asarray(points - middle, np.float32), np.asarray(mesh.faces, np.uint32),
-                 _rgba(mesh), _glb(mesh, points - middle))
+        MeshPart(points - middle, np.asarray(mesh.faces), _rgba(mesh), _glb(mesh, points - middle))
         for mesh, points in surfaces]
     triangle_count = sum(len(part.faces) for part in parts)
-    msg = ''
     if not parts:
         listed = quoted_names(sorted(set(names)), _MOST_LISTED)
         msg = (f'it has no part "{submesh}", but {listed}' if names and submesh
@@ -258,17 +239,16 @@ def _parts(
         msg = f'a coordinate is larger than {_LARGEST_M:g} m'
     elif triangle_count > MOST_TRIANGLES:
         msg = f'it has {triangle_count} triangles, more than {MOST_TRIANGLES}'
-    if msg:
-        raise ValueError(msg)
-    return tuple(parts)
+    else:
+        return tuple(parts)
+    raise ValueError(msg)
 
 
 def _rgba(mesh: trimesh.Trimesh) -> tuple[float, ...]:
     visual: Any = mesh.visual
     if visual is None or not visual.defined:
         return ()
-    material = getattr(visual, 'material', None)
-    rgba = visual.main_color if material is None else material.main_color
+    rgba = getattr(visual, 'material', visual).main_color
     return tuple((np.asarray(rgba, float)[:4] / 255.0).tolist())
 
 

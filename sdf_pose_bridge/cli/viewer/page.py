@@ -4,27 +4,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from functools import partial
-from itertools import cycle
+from itertools import cycle, islice
 from pathlib import Path
 
-import numpy as np
 import viser
 
 from sdf_pose_bridge.cli.printing import DEGREES, RADIANS, Units
-from sdf_pose_bridge.cli.viewer.browser_script import html_of_data, page_with_script
+from sdf_pose_bridge.cli.viewer.browser_script import page_with_script
 from sdf_pose_bridge.cli.viewer.drawing import Drawing, GROUPS, HIDDEN_AT_FIRST
 from sdf_pose_bridge.cli.viewer.frame_texts import (
+    escaped,
+    html_of_data,
+    html_of_frame,
     html_of_lines,
     html_of_moved,
     html_of_place,
     html_of_reasons,
+    rows_of_tree,
 )
 from sdf_pose_bridge.cli.viewer.joint_sliders import JointSliders
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
-from sdf_pose_bridge.cli.viewer.pose_edit import EditedFrame, PoseEdit, SetPose
-from sdf_pose_bridge.cli.viewer.selected_frame import SelectedFrame
+from sdf_pose_bridge.cli.viewer.pose_edit import FindChange, PoseEdit
 from sdf_pose_bridge.cli.viewer.server import Events, server_for_its_owner
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.cli.viewer.view_point import (
@@ -35,62 +37,156 @@ from sdf_pose_bridge.cli.viewer.view_point import (
     view_in_window,
     view_of_bounds,
 )
-from sdf_pose_bridge.geometry.poses import relative_pose
 from sdf_pose_bridge.names import printable
-from sdf_pose_bridge.tf.joint_positions import scene_at_positions
+from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
+from sdf_pose_bridge.tf.tree import TfOptions
 
 _ANGLES = {unit.name: unit for unit in (RADIANS, DEGREES)}
+
+MOST_ROWS = 300
+"""Largest number of rows of the tree of frames in the page; a search finds the others."""
+
+_MOST_CHOICES = 1000
+_ROWS_STYLE = ('<style>.rows{max-height:40vh;overflow:auto;margin:0 1em;font-size:0.8em}'
+               '.rows div{display:flex;white-space:pre} .rows label{flex:1}'
+               '.rows [data-ask]{cursor:pointer} .rows :is(b, i){width:1.2em;color:#4dabf7}'
+               '.rows .selected{font-weight:bold}</style>')
+_SIGNS = {'model': '\u25a2', 'link': '\u25cf', 'sensor': '\u25c6'}
+"""The signs of the kinds of frames; other frames have a cross."""
+_EYES, _FOLDS = ('\u25c9', '\u25cb'), ('\u25be', '\u25b8')
+"""The signs of a frame that is shown or hidden, and of one that is open or folded."""
+
+
+class SelectedFrame:
+    """The folder with the tree of frames, and a given one of the selected frame."""
+
+    def __init__(
+        self, gui: viser.GuiApi, folder: viser.GuiFolderHandle, events: Events,
+    ) -> None:
+        self._ids: tuple[str, ...] = ()
+        self._frame_id = ''
+        self._folded: set[str] = set()
+        self.hidden: set[str] = set()
+        """The ids of the frames that are hidden with all that is in them."""
+        with gui.add_folder('Frames'):
+            self._search = gui.add_text('search', '', hint='frames are selected in the scene, too')
+            self._rows = gui.add_html('')
+        self._folder = folder
+        with folder:
+            self._choice = gui.add_dropdown(
+                'relative to', ('',), hint='for the pose and the distance')
+            measure = gui.add_button(
+                'measure from this frame', hint='to frames that are selected next', color='gray')
+            self._description = gui.add_html('')
+        events.when(self._search.on_update)
+        events.when(self._choice.on_update)
+        events.when(measure.on_click, self._measure_from_here)
+
+    @property
+    def frame(self) -> int:
+        """Index of the selected frame, or ``ROOT_IS_PARENT``, which is -1, for none."""
+        return self._index(self._frame_id)
+
+    @property
+    def reference(self) -> int:
+        """Index of the frame to which its pose is relative, or ``ROOT_IS_PARENT``."""
+        return self._index(self._choice.value)
+
+    def _index(self, frame_id: str) -> int:
+        return self._ids.index(frame_id) if frame_id in self._ids else ROOT_IS_PARENT
+
+    def answer(self, verb: str, frame: int) -> None:
+        """Select, fold or hide a frame ("select", "fold" or "hide"), or undo the latter."""
+        if frame >= len(self._ids):
+            return
+        if verb == 'select':
+            self._frame_id = self._ids[frame]
+        else:
+            ids = self._folded if verb == 'fold' else self.hidden
+            ids ^= {self._ids[frame]}
+
+    def list_frames(self, shown: ShownScene) -> None:
+        """List the frames of a scene; the selected one stays."""
+        tree, kinds = shown.tree, shown.labels
+        self._ids = ids = tree.frame_ids
+        choices = (tree.root_frame, *ids[:_MOST_CHOICES])
+        if choices != self._choice.options:
+            self._choice.options = choices
+        rows = list(islice(rows_of_tree(tree, self._search.value, self._folded), MOST_ROWS))
+        content = ''.join(
+            f'<div style="padding-left:{depth}em"><i data-ask="fold {frame}">'
+            f'{_FOLDS[ids[frame] in self._folded] if has_children else ""}</i>'
+            f'<b title="{kinds[frame]}">{_SIGNS.get(kinds[frame], "+")}</b>'
+            f'<label data-ask="select {frame}"'
+            f'{" class=selected" if ids[frame] == self._frame_id else ""}>{escaped(text)}</label>'
+            f'<i data-ask="hide {frame}" title="show or hide">{_EYES[ids[frame] in self.hidden]}'
+            '</i></div>'
+            for frame, depth, text, has_children in rows)
+        if not self._search.value and len(rows) < len(ids):
+            content += f'{len(ids) - len(rows)} more, to be found by the search'
+        self._rows.content = f'{_ROWS_STYLE}<div class="rows">{content}</div>'
+
+    def describe(self, html: str) -> None:
+        """Show the description of the selected frame; empty for none."""
+        self._folder.visible = bool(html)
+        self._description.content = html
+
+    def _measure_from_here(self) -> None:
+        if self.frame >= 0 and self._frame_id in self._choice.options:
+            self._choice.value = self._frame_id
 
 
 class Page:
     """
     The page of a file; one thread processes the requests of browsers.
 
-    :param shown: the scene that it shows at first.
+    :param scene: the scene that it shows at first, loaded with its shapes.
+    :param options: the elements that are frames, and the rules for their names.
     :param port: its port, or the next one that is free; 0 for any.
     :param units: the units of poses and sliders at first.
-    :param meshes: reads the meshes.
-    :param set_pose: writes a pose into the file; None if frames cannot be moved.
-    :param hidden: groups and kinds of frames that are hidden at first.
+    :param find_change: finds the change of a file for a pose; None if frames cannot be moved.
+    :raises SdfError: if the scene has no TF tree, or a model to show does not exist.
     """
 
     def __init__(
-        self, shown: ShownScene, port: int, units: Units, meshes: MeshReader,
-        set_pose: SetPose | None = None, hidden: Iterable[str] = HIDDEN_AT_FIRST,
+        self, scene: Scene, options: TfOptions, port: int, units: Units, meshes: MeshReader,
+        find_change: FindChange | None = None,
     ) -> None:
-        title = printable(Path(shown.loaded.path).name)
+        self._options, self._shown = options, ShownScene(scene, options)
+        title = printable(Path(scene.path).name)
         self._server, self.address = server_for_its_owner(port, title)
         gui = self._server.gui
-        self._shown, self._units, self._hidden = shown, units, set(hidden)
+        self._units, self._hidden = units, {*HIDDEN_AT_FIRST}
         self._events, self._meshes = Events(), meshes
-        gui.set_panel_label(title)
-        self._strip, self._reasons, self._names, self._labels = (
-            gui.add_html('') for _ in range(4))
-        gui.add_html(html_of_data('path', str(Path(shown.loaded.path).resolve())))
-        gui.add_html('<div class="asked"></div>')
-        asked = gui.add_text('asked', '')
-        self._events.when(asked.on_update, lambda: self._answer(asked.value.partition(' ')[2]))
         self._errors: Iterable[str] = ()
-        self._edit = None if set_pose is None else PoseEdit(
-            self._server, set_pose, self._events, self._describe)
-        place_of_selected = gui.add_folder(None)
-        self._add_view_controls()
+        gui.set_panel_label(title)
+        self._reasons = gui.add_html('')
+        # In the scene, as a panel that is folded gives a browser nothing.
+        self._data = self._server.scene.add_3d_gui_container('/data')
+        with self._data:
+            self._strip, self._names, self._labels, self._opacity = (
+                gui.add_html('') for _ in range(4))
+            gui.add_html(html_of_data('path', str(Path(scene.path).resolve())))
+            asked = gui.add_text('asked', '')
+        self._events.when(asked.on_update, lambda: self._answer(asked.value.partition(' ')[2]))
+        self._edit = None if find_change is None else PoseEdit(
+            self._server, self._shown, find_change, self._events)
+        folder_of_selected = gui.add_folder('Selected frame', visible=False)
+        self._angles = self._add_view_controls()
         self._switches = self._add_switches()
-        self._sliders, self._joints = self._add_joints({})
-        self._posed = shown.at(self._joints.positions)
-        self._positions = dict(self._joints.positions)
-        self._selected = SelectedFrame(
-            gui, place_of_selected, self._posed, self._events, self._show_frame)
+        self._joints = JointSliders(gui, self._shown.joints, {}, units, self._events)
+        self._selected = SelectedFrame(gui, folder_of_selected, self._events)
         self._node_names = cycle(('/drawing', '/other drawing'))
+        self._shown = self._shown.at(self._joints.positions)
         self._drawing = self._new_drawing()
+        self._refresh()
         camera = self._server.initial_camera
         camera.position, camera.look_at = self._drawing.home
         camera.fov = FIELD_OF_VIEW_RAD
         camera.near, camera.far = 0.001 * self._drawing.size_m, 100.0 * self._drawing.size_m
         self._server.on_client_connect(
             lambda client: self._events.put(partial(self._add_client, client)))
-        self._describe()
 
     @property
     def reasons(self) -> list[str]:
@@ -98,115 +194,93 @@ class Page:
         return self._drawing.reasons
 
     def html(self, title: str) -> str:
-        """Return the scene, without controls, as a page that needs no network."""
-        page: str = self._server.get_scene_serializer().as_html()
-        return page_with_script(page, printable(title), self._names.content + self._labels.content)
+        """Return the scene with all names, without controls, as a page that needs no network."""
+        self._hidden.discard('all names')
+        labels = self._drawing.show(
+            self._shown, ROOT_IS_PARENT, ROOT_IS_PARENT, self._units.length)
+        self._data.remove()
+        return page_with_script(
+            self._server.get_scene_serializer().as_html(), printable(title),
+            self._names.content + html_of_data('labels', labels))
 
     def close(self) -> None:
         """End the server."""
         self._server.stop()
 
-    def show(self, shown: ShownScene) -> None:
+    def show(self, scene: Scene) -> None:
         """
         Show a scene instead of the one before.
 
         Hidden groups, the selected frame and the positions of joints stay.
+
+        :raises SdfError: as the constructor does.
         """
+        before, self._shown = self._shown, ShownScene(scene, self._options)
+        self._errors = ()
         with self._server.atomic():
-            before, self._shown = self._shown, shown
-            if shown.kinds != before.kinds:
+            if {*self._shown.labels} != {*before.labels}:
                 self._switches.remove()
                 self._switches = self._add_switches(self._switches.order)
-            # Many sliders take a browser long.
-            if shown.joints != before.joints:
-                self._replace_joints()
-            self._move()
-            self._selected.list_frames(self._posed)
-            self._redraw()
-            self.show_errors([])
+            self._refresh()
 
     def show_errors(self, lines: Iterable[str]) -> None:
         """Show the errors of a file, a line for each, over its last scene."""
-        self._errors = lines
-        self._describe()
+        self._errors = tuple(lines)
+        self._refresh()
 
     def act(self, seconds: float) -> None:
         """Process the requests of browsers; wait no longer than this for them."""
+        next(self._joints.moves, None)
         actions = self._events.asked(seconds)
         with self._server.atomic():
             for action in actions:
                 action()
-            next(self._joints.moves, None)
-            if self._positions != self._joints.positions:
-                self._move()
-                self._show_frame()
             # While a gizmo moves, there is no time to read a file.
-            if not actions and self._edit is not None:
-                self._edit.look_ahead()
+            if actions or (self._edit is not None and self._edit.look_ahead()):
+                self._refresh()
 
-    # Drawing
-
-    def _move(self) -> None:
-        self._positions = dict(self._joints.positions)
-        self._posed = self._shown.at(self._positions)
+    def _refresh(self) -> None:
+        """Show what the controls say by now."""
+        shown, selected, edit = self._shown, self._selected, self._edit
+        units = self._units._replace(angle=_ANGLES[self._angles.value])
+        # Many sliders take a browser long.
+        if (shown.joints, units) != (self._joints.ranges, self._joints.units):
+            self._joints.folder.remove()
+            self._joints = JointSliders(
+                self._server.gui, shown.joints, self._joints.positions, units, self._events,
+                self._joints.folder.order)
+        if shown.positions != self._joints.positions:
+            self._shown = shown = shown.at(self._joints.positions)
+        selected.list_frames(shown)
+        if (shown.loaded, self._hidden, selected.hidden) != self._drawn_for:
+            self._drawing.remove()
+            self._drawing = self._new_drawing()
+        drawn, frame, reference, strip = shown, selected.frame, selected.reference, ''
+        if edit is not None:
+            edit.refresh(shown, frame, reference, units)
+            strip = edit.html
+            if edit.scene_ahead is not None:
+                drawn = shown.at(shown.positions, edit.scene_ahead)
+            if edit.pose is not None:
+                drawn = drawn.with_pose(frame, edit.pose)
+        if frame >= 0:
+            strip = (html_of_place(drawn, frame, reference, units)
+                     + html_of_moved(shown.tree, drawn.tree, frame) + strip)
+        self._labels.content = html_of_data(
+            'labels', self._drawing.show(drawn, frame, reference, units.length))
+        selected.describe(html_of_frame(drawn, frame, reference, units) if frame >= 0 else '')
+        self._strip.content = html_of_data(
+            'strip', f'{html_of_lines("errors", self._errors)}{strip}')
 
     def _new_drawing(self) -> Drawing:
+        hidden = self._hidden, self._selected.hidden
+        self._drawn_for = self._shown.loaded, *map(frozenset, hidden)
         drawing = Drawing(
-            self._server.scene, next(self._node_names), self._meshes, self._shown, self._posed,
-            self._hidden, self._selected.hidden,
-            lambda frame: self._events.put(partial(self._selected.select, frame)))
-        self._drawn = self._posed
+            self._server.scene, next(self._node_names), self._meshes, self._shown, *hidden,
+            lambda frame: self._events.put(partial(self._selected.answer, 'select', frame)))
         self._reasons.content = html_of_reasons(drawing.reasons)
         self._names.content = html_of_data('names', drawing.names)
         return drawing
-
-    def _redraw(self) -> None:
-        self._drawing.remove()
-        self._drawing = self._new_drawing()
-        self._show_frame()
-
-    def _show_frame(self) -> None:
-        """Show the selected frame at its current pose."""
-        if self._edit is None:
-            self._describe()
-        else:
-            self._edit.begin(self._edited_frame(), self._units)
-
-    def _edited_frame(self) -> EditedFrame | None:
-        tree, positions = self._posed.tree, dict(self._positions)
-        frame, reference = self._selected.frame, self._selected.reference
-        if frame < 0 or tree.elements[frame] < 0:
-            return None
-        return EditedFrame(
-            self._shown.loaded, int(tree.elements[frame]), self._posed.pose_of(frame),
-            self._posed.pose_of(reference), tree.frame_ids[frame],
-            lambda scene, element: scene_at_positions(scene, positions).pose_of(element))
-
-    def _describe(self) -> None:
-        """Describe the selected frame, and mark it in the scene at its current or new pose."""
-        frame, pose = self._selected.frame, None if self._edit is None else self._edit.pose
-        if frame >= 0 and pose is None:
-            pose = self._posed.pose_of(frame)
-        ahead = None if self._edit is None else self._edit.scene_ahead
-        drawn = self._posed if ahead is None else self._shown.at(self._positions, ahead)
-        if drawn is not self._drawn:
-            self._drawing.place(drawn)
-            self._drawn = drawn
-        tree, reference = self._posed.tree, self._selected.reference
-        origin, place = self._posed.pose_of(reference), ''
-        if pose is not None:
-            place = html_of_place(
-                tree.frame_ids[frame], (*tree.frame_ids, tree.root_frame)[reference],
-                relative_pose(origin, pose), self._units)
-        self._drawing.mark(
-            drawn.tree, frame, pose, None if reference == ROOT_IS_PARENT else origin,
-            self._units.length)
-        self._labels.content = html_of_data('labels', self._drawing.labels(drawn, frame, pose))
-        self._selected.describe(drawn, pose, self._units)
-        self._strip.content = html_of_data(
-            'strip', f'{html_of_lines("errors", self._errors)}{place}'
-            f'{html_of_moved(tree, drawn.tree, frame)}'
-            f'{"" if self._edit is None else self._edit.html}')
 
     def _add_client(self, client: viser.ClientHandle) -> None:
         if client.camera.aspect < 1.0:
@@ -217,12 +291,8 @@ class Page:
     def _answer(self, ask: str) -> None:
         """Do what was clicked outside of the controls."""
         verb, _, frame = ask.partition(' ')
-        if verb == 'select':
-            self._selected.select(int(frame))
-        elif verb in {'fold', 'hide'}:
-            self._selected.toggle(verb, int(frame))
-            if verb == 'hide':
-                self._redraw()
+        if verb in {'select', 'fold', 'hide'}:
+            self._selected.answer(verb, int(frame))
         elif self._edit is not None and ask in self._edit.actions:
             self._edit.actions[ask]()
 
@@ -230,34 +300,17 @@ class Page:
         """Add the folder "Show"."""
         switches = self._server.gui.add_folder('Show', expand_by_default=False, order=order)
         with switches:
-            for name in (*self._shown.kinds, *GROUPS):
+            for name in dict.fromkeys((*self._shown.labels, *GROUPS)):
                 self._add_switch(name)
         return switches
 
-    def _add_joints(
-        self, positions: Mapping[str, float], order: float | None = None,
-    ) -> tuple[viser.GuiFolderHandle, JointSliders]:
-        """Add the folder "Joints"."""
-        folder = self._server.gui.add_folder(None, order=order)
-        with folder:
-            return folder, JointSliders(
-                self._server.gui, self._shown.joints, positions, self._units, self._events)
-
-    def _replace_joints(self) -> None:
-        self._sliders.remove()
-        self._sliders, self._joints = self._add_joints(
-            self._joints.positions, self._sliders.order)
-
     def _add_switch(self, name: str) -> None:
         switch = self._server.gui.add_checkbox(printable(name), name not in self._hidden)
+        self._events.when(switch.on_update, lambda: (
+            self._hidden.discard if switch.value else self._hidden.add)(name))
 
-        def change() -> None:
-            (self._hidden.discard if switch.value else self._hidden.add)(name)
-            self._redraw()
-        self._events.when(switch.on_update, change)
-
-    def _add_view_controls(self) -> None:
-        """Add the folder "View"."""
+    def _add_view_controls(self) -> viser.GuiDropdownHandle[str]:
+        """Add the folder "View"; return the unit of angles in it."""
         gui = self._server.gui
         with gui.add_folder('View'):
             views = gui.add_button_group('view', ('home', *DIRECTIONS, 'zoom to'))
@@ -265,18 +318,13 @@ class Page:
             angles = gui.add_dropdown(
                 'angles', tuple(_ANGLES), initial_value=self._units.angle.name)
             dark = gui.add_checkbox('dark background', initial_value=False)
-            shown_opacity = gui.add_html('')
-
-        def change_angles() -> None:
-            self._units = self._units._replace(angle=_ANGLES[angles.value])
-            self._replace_joints()
-            self._show_frame()
         self._events.when(views.on_click, lambda: self._look(views.value))
         self._events.when(opacity.on_update, lambda: setattr(
-            shown_opacity, 'content', html_of_data('opacity', str(opacity.value))))
-        self._events.when(angles.on_update, change_angles)
+            self._opacity, 'content', html_of_data('opacity', str(opacity.value))))
+        self._events.when(angles.on_update)
         self._events.when(dark.on_update, lambda: gui.configure_theme(
             show_logo=False, show_share_button=False, dark_mode=dark.value))
+        return angles
 
     def _look(self, name: str) -> None:
         """Turn the cameras to a view; "zoom to" shows the selected frame, link or model."""
@@ -285,11 +333,11 @@ class Page:
         if name in DIRECTIONS:
             view = view_of_bounds(drawing.bounds, DIRECTIONS[name])
         elif name == 'zoom to' and self._selected.frame >= 0:
-            tree, frame = self._posed.tree, self._selected.frame
-            origin, half_m = tree.poses[frame, :3], 3.0 * drawing.axes_length_m
-            boxes = drawing.boxes(self._posed, self._shown.is_in(int(tree.elements[frame])))
-            view = view_of_bounds(bounds_of_points(np.concatenate([
-                [origin - half_m, origin + half_m], boxes.reshape(-1, 3)])),
+            shown, frame = self._shown, self._selected.frame
+            origin, half_m = shown.tree.poses[frame, :3], 3.0 * drawing.axes_length_m
+            boxes = drawing.boxes(shown, shown.element_of(frame))
+            view = view_of_bounds(
+                bounds_of_points(origin - half_m, origin + half_m, boxes),
                 view.position - view.look_at)
         for client in self._server.get_clients().values():
             self._turn(client, view)

@@ -8,30 +8,30 @@ Private names of viser are used only here.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 import contextlib
-from dataclasses import replace
 from http import HTTPStatus
 import logging
+from pathlib import Path
 from queue import Empty, SimpleQueue
+import re
 import secrets
 from typing import Any
-from urllib.parse import urlsplit
 
 import rich
 import viser
 from websockets.asyncio import server as websockets_server
 from websockets.asyncio.server import ServerConnection
-from websockets.datastructures import Headers, MultipleValuesError
+from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
 from sdf_pose_bridge.cli.printing import CommandError
 from sdf_pose_bridge.cli.viewer import LIBRARIES
 from sdf_pose_bridge.cli.viewer.browser_script import page_with_script
-from sdf_pose_bridge.names import printable
 
 _ADDRESS = '127.0.0.1'
-_NAMES = (_ADDRESS, 'localhost')
+_HOSTS = r'(127\.0\.0\.1|localhost)(:[0-9]+)?'
+_PAGE_OF_VISER = Path(viser.__file__).parent / 'client/build/index.html'
 _PANEL_WIDTH, _PANEL_PART, _LEAST_WIDTH = 360, 0.35, 720
 """The largest width of the panel in pixels and as a part of a window, and the least width of a
 window in which it is open at first."""
@@ -40,37 +40,29 @@ _NOT_KNOWN = (
     f'({LIBRARIES[0]})')
 
 
-class Events:
+class Events(SimpleQueue[Callable[[], object]]):
     """The requests of browsers, which viser receives in its threads, for one thread."""
 
-    def __init__(self) -> None:
-        self._actions: SimpleQueue[Callable[[], object]] = SimpleQueue()
-
-    def put(self, action: Callable[[], object]) -> None:
-        """Add a function to :meth:`asked`."""
-        self._actions.put(action)
-
-    def when(self, happens: Callable[..., object], action: Callable[[], object]) -> None:
-        """Add a function to :meth:`asked` at each event, such as ``button.on_click``."""
+    def when(
+        self, happens: Callable[..., object], action: Callable[[], object] = lambda: None,
+    ) -> None:
+        """Add a function at each event, such as ``button.on_click``."""
         async def put(_: object) -> None:
             self.put(action)
         happens(put)
 
     def asked(self, seconds: float) -> list[Callable[[], object]]:
         """Return the functions to call; wait no longer than this for them."""
-        actions = []
         with contextlib.suppress(Empty):
-            actions.append(self._actions.get(timeout=seconds))
-            while True:
-                actions.append(self._actions.get_nowait())
-        return actions
+            first = self.get(timeout=seconds)
+            return [first, *(self.get_nowait() for _ in range(self.qsize()))]
+        return []
 
 
 def server_for_its_owner(port: int, title: str) -> tuple[viser.ViserServer, str]:
     """
     Start a server for this user only, not for other machines, users or pages of other servers.
 
-    :param title: the title of its page.
     :param port: its port, or the next one that is free; 0 for any.
     :return: the server, and the address of its page: with a secret in its path, without which
         requests are rejected.
@@ -80,8 +72,31 @@ def server_for_its_owner(port: int, title: str) -> tuple[viser.ViserServer, str]
     # Else each connection that a browser opens in advance, and closes, is an error with a trace.
     logging.getLogger('websockets').setLevel(logging.CRITICAL)
     secret = secrets.token_urlsafe(16)
-    with _requests_need(secret, title):
+    page = page_with_script(_PAGE_OF_VISER.read_text(encoding='utf-8'), title).encode()
+    serve, guarded = websockets_server.serve, []
+
+    def answer(connection: ServerConnection, request: Request) -> Response | None:
+        reason = reason_to_refuse(request, secret)
+        if reason:
+            return connection.respond(HTTPStatus.FORBIDDEN, f'{reason}\n')
+        if request.headers.get('Upgrade') == 'websocket':
+            return None
+        return Response(HTTPStatus.OK, 'OK', Headers({
+            'Content-Type': 'text/html; charset=utf-8', 'Content-Length': str(len(page))}), page)
+
+    def guarded_serve(*arguments: Any, **options: Any) -> Any:
+        guarded.append(answer)
+        return serve(*arguments, **{**options, 'process_request': answer})
+
+    # viser has no place for this, so it is put where viser starts its server. To judge connections
+    # when viser has accepted them would be too late for earlier requests.
+    websockets_server.serve = guarded_serve  # type: ignore[assignment,misc]
+    try:
         server = viser.ViserServer(_ADDRESS, port, verbose=False)
+    finally:
+        websockets_server.serve = serve  # type: ignore[misc]
+    if not guarded:
+        raise CommandError(_NOT_KNOWN)
     server.gui.configure_theme(show_logo=False, show_share_button=False)
     server.on_client_connect(_dock_panel)
     # The environment map of viser makes every color pale.
@@ -101,60 +116,15 @@ def _dock_panel(client: viser.ClientHandle) -> None:
 
 def reason_to_refuse(request: Request, secret: str) -> str:
     """
-    Judge a request for a file, or for a connection.
+    Judge a request for the page, or for a connection.
 
     :param secret: the beginning of its path.
     :return: the reason why it is rejected; empty if it is not.
     """
-    try:
-        given = urlsplit(request.path).path.split('/')[1:2]
-        if not given or not secrets.compare_digest(given[0].encode(), secret.encode()):
-            return 'this page is shown only at the address that sdf_pose view has printed'
-        host, origin = request.headers.get('Host'), request.headers.get('Origin')
-        if urlsplit(f'//{host}').hostname not in _NAMES or origin not in (None, f'http://{host}'):
-            return 'only the page of this server may connect'
-    except (ValueError, MultipleValuesError) as error:
-        return f'the address is not valid: {printable(str(error))}'
+    given = ''.join(request.path.partition('?')[0].split('/')[1:2])
+    if not secrets.compare_digest(given.encode(errors='replace'), secret.encode()):
+        return 'this page is shown only at the address that sdf_pose view has printed'
+    hosts, origins = (request.headers.get_all(name) for name in ('Host', 'Origin'))
+    if not re.fullmatch(_HOSTS, ' '.join(hosts)) or origins not in ([], [f'http://{hosts[0]}']):
+        return 'only the page of this server may connect'
     return ''
-
-
-@contextlib.contextmanager
-def _requests_need(secret: str, title: str) -> Iterator[None]:
-    """
-    Let a server that is started meanwhile answer only to requests with a secret in their path.
-
-    :raises CommandError: if no server was started in the way that is known.
-    """
-    # viser has no place for this, so it is put where viser starts its server. To judge connections
-    # when viser has accepted them would be too late for earlier requests.
-    serve = websockets_server.serve
-    guarded = []
-
-    def guarded_serve(*arguments: Any, process_request: Any, **options: Any) -> Any:
-        def process(connection: ServerConnection, request: Request) -> Response | None:
-            reason = reason_to_refuse(request, secret)
-            if reason:
-                return connection.respond(HTTPStatus.FORBIDDEN, f'{reason}\n')
-            headers = Headers(request.headers)
-            # The page is changed below, which is simpler when it is not compressed.
-            headers.pop('Accept-Encoding', None)
-            path = request.path.removeprefix(f'/{secret}') or '/'
-            answer: Response | None = process_request(
-                connection, replace(request, path=path, headers=headers))
-            kind = '' if answer is None else answer.headers.get('Content-Type', '')
-            if answer is not None and kind.startswith('text/html'):
-                answer.body = page_with_script((answer.body or b'').decode(), title).encode()
-                answer.headers.pop('Content-Length', None)
-                answer.headers['Content-Length'] = str(len(answer.body))
-            return answer
-
-        guarded.append(process)
-        return serve(*arguments, process_request=process, **options)
-
-    websockets_server.serve = guarded_serve  # type: ignore[assignment,misc]
-    try:
-        yield
-    finally:
-        websockets_server.serve = serve  # type: ignore[misc]
-    if not guarded:
-        raise CommandError(_NOT_KNOWN)

@@ -1,40 +1,54 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Prepare a scene for the page: its models, its joints, and its frames at positions of joints."""
+"""A scene as the page shows it: its models, its joints, and its frames at positions of joints."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
+import copy
+from dataclasses import replace
+import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sdf_pose_bridge.cli.printing import kind_labels_of
-from sdf_pose_bridge.cli.viewer.joint_sliders import JointRange, range_of_dof
 from sdf_pose_bridge.geometry.chains import ends_from_pointers
-from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.poses import Pose, relative_pose
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.tf.joint_motion import JointMotion
+from sdf_pose_bridge.tf.joint_motion import DegreeOfFreedom, JointMotion
 from sdf_pose_bridge.tf.joint_positions import scene_at_positions
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT, tf_parents_from_scene
-from sdf_pose_bridge.tf.tree import elements_in_model, tf_tree_from_scene, TfOptions, TfTree
+from sdf_pose_bridge.tf.tree import elements_in_model, tf_tree_from_scene, TfOptions
+
+_LARGEST_RANGE = 1000.0
+"""A joint with a wider range counts as one without limits, which the page moves by half a turn or
+half a metre to either side."""
 
 
-class PosedScene(NamedTuple):
-    """A scene at some positions of its joints, and its TF tree there."""
+class JointRange(NamedTuple):
+    """The range of a joint, in radians or metres."""
 
-    scene: Scene
-    tree: TfTree
+    is_angle: bool
+    lower: float
+    upper: float
+    is_turn: bool = False
+    """Whether it is a whole turn, so that its ends are one position."""
 
-    def pose_of(self, frame: int) -> Pose:
-        """Return the pose of a frame in the root frame, for which ``ROOT_IS_PARENT`` stands."""
-        return Pose() if frame == ROOT_IS_PARENT else Pose(*self.tree.poses[frame].tolist())
+
+def range_of_dof(dof: DegreeOfFreedom) -> JointRange:
+    """Return the range of a degree of freedom."""
+    is_angle, axis = bool(dof.rad_per_unit), dof.axis
+    if axis.upper - axis.lower >= _LARGEST_RANGE:
+        most = math.pi if is_angle else 0.5
+        return JointRange(is_angle, -most, most, is_turn=is_angle)
+    return JointRange(is_angle, axis.lower, max(axis.lower, axis.upper))
 
 
 class ShownScene:
     """
-    A scene as the page shows it.
+    A scene as the page shows it, at some positions of its joints; at first as it was loaded.
 
     :param loaded: the scene, loaded with its shapes.
     :param options: the elements that are frames, and the rules for their names.
@@ -42,42 +56,59 @@ class ShownScene:
     """
 
     def __init__(self, loaded: Scene, options: TfOptions) -> None:
-        tree = tf_tree_from_scene(loaded, options)
+        self.loaded, self.scene, self._options = loaded, loaded, options
+        self.positions: Mapping[str, float] = {}
+        """The positions of joints, in radians or metres; the others are at zero."""
+        self.tree = tf_tree_from_scene(loaded, options)
+        """The TF tree at these positions."""
+        self.ids: Sequence[str] = (*self.tree.frame_ids, self.tree.root_frame)
+        """The ids of all frames, and of the root frame, at the index ``ROOT_IS_PARENT``."""
+        self.labels: Sequence[str] = kind_labels_of(loaded, self.tree)
+        """The label of the kind of each frame."""
         dofs = JointMotion(loaded, tf_parents_from_scene(loaded)).dofs
-        self.loaded, self._options = loaded, options
-        self._is_in_model = elements_in_model(loaded, options.model) & (loaded.roots == 0)
-        # The outermost element around each, below the world or the implicit root.
-        self._tops = ends_from_pointers(
-            np.where(loaded.parents[loaded.parents] < 0, -1, loaded.parents))
-        self.kinds: tuple[str, ...] = tuple(dict.fromkeys(kind_labels_of(loaded, tree)))
-        """The labels of the kinds of its frames."""
+        self.is_in_model = elements_in_model(loaded, options.model) & (loaded.roots == 0)
+        """Shape (n,): whether each element is to be shown."""
         self.joints: dict[str, JointRange] = {
             dof.name: range_of_dof(dof) for dof in dofs
-            if self._is_in_model[dof.joint.element] and dof.axis.mimic is None}
+            if self.is_in_model[dof.joint.element] and dof.axis.mimic is None}
         """The range of each degree of freedom that does not follow another one."""
-        self.is_in_robot: NDArray[np.bool_] = np.isin(
-            self._tops, self._tops[[dof.joint.element for dof in dofs]])
+        self.is_in_robot = self.is_in(
+            [loaded.top_level_element(dof.joint.element) for dof in dofs])
         """Shape (n,): whether each element is in a model that moves."""
 
-    def is_shown(self, hidden: Iterable[int]) -> NDArray[np.bool_]:
-        """Return whether each element is in none of the hidden elements, shape (n,)."""
-        shown: NDArray[np.bool_] = self._is_in_model.copy()
-        for element in hidden:
-            shown &= ~self.is_in(element)
-        return shown
+    def is_in(self, elements: Sequence[int]) -> NDArray[np.bool_]:
+        """Return whether each element is one of some elements, or in one, shape (n,)."""
+        parents = self.loaded.parents
+        is_end = np.isin(np.arange(len(parents)), elements)
+        return np.take(is_end, ends_from_pointers(np.where(is_end, -1, parents)))
 
-    def is_in(self, element: int) -> NDArray[np.bool_]:
-        """Return whether each element is a given one, or in it, shape (n,)."""
-        is_end = np.arange(len(self.loaded.parents)) == element
-        inside: NDArray[np.bool_] = ends_from_pointers(
-            np.where(is_end, -1, self.loaded.parents)) == element
-        return inside
-
-    def at(self, positions: Mapping[str, float], scene: Scene | None = None) -> PosedScene:
+    def at(self, positions: Mapping[str, float], scene: Scene | None = None) -> ShownScene:
         """
-        Return the scene with its joints at positions, in radians or metres.
+        Return the scene at positions of its joints.
 
         :param scene: the same scene with other poses.
         """
-        scene = scene_at_positions(scene or self.loaded, positions)
-        return PosedScene(scene, tf_tree_from_scene(scene, self._options))
+        shown = copy.copy(self)
+        shown.positions, shown.scene = positions, scene_at_positions(
+            scene or self.loaded, positions)
+        shown.tree = tf_tree_from_scene(shown.scene, self._options)
+        return shown
+
+    def with_pose(self, frame: int, pose: Pose) -> ShownScene:
+        """Return the scene with a frame at another pose; other frames stay."""
+        poses, shown = self.tree.poses.copy(), copy.copy(self)
+        poses[frame] = pose
+        shown.tree = replace(self.tree, poses=poses)
+        return shown
+
+    def element_of(self, frame: int) -> int:
+        """Return the element of a frame; -1 for the root frame and for one without an element."""
+        return -1 if frame == ROOT_IS_PARENT else int(self.tree.elements[frame])
+
+    def pose_of(self, frame: int) -> Pose:
+        """Return the pose of a frame in the root frame, for which ``ROOT_IS_PARENT`` stands."""
+        return Pose() if frame == ROOT_IS_PARENT else Pose(*self.tree.poses[frame].tolist())
+
+    def pose_in(self, reference: int, frame: int) -> Pose:
+        """Return the pose of a frame in another one."""
+        return relative_pose(self.pose_of(reference), self.pose_of(frame))

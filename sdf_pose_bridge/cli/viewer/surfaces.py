@@ -4,11 +4,11 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 import trimesh
 
 from sdf_pose_bridge.cli.viewer.meshes import MeshPart, MeshReader
@@ -37,7 +37,7 @@ class Surface(NamedTuple):
     """The visual or collision of each copy."""
     scales: Floats
     """Shape (n, 3): the factors of each copy along x, y and z."""
-    rgba: NDArray[np.float64]
+    rgba: Floats
     """Shape (n, 4): the color of each copy, components from 0 to 1."""
     reason: str
     """The reason why this replaces a mesh; empty for the surface in the file."""
@@ -49,15 +49,13 @@ def surfaces_from_scene(
     """
     Choose the surfaces of visuals and collisions.
 
-    :param scene: the scene, loaded with its shapes.
     :param elements: the visuals and collisions to draw.
     :param size_m: extent of the frames; it limits the sides of planes, and the box for an unknown
         mesh is a small part of it.
-    :param meshes: reads meshes.
     :return: the surfaces, and by the reason the elements that cannot be drawn: of each the URI of
         its mesh, empty for another shape.
     """
-    copies: dict[tuple[Kind, Shape, str, bool], list[int]] = {}
+    copies: dict[tuple[Kind, Shape, str, bool], list[int]] = defaultdict(list)
     for element in elements:
         shape = scene.shapes[element]
         if shape.is_visible:
@@ -68,17 +66,17 @@ def surfaces_from_scene(
             kind = Kind(scene.kinds[element])
             # As in Gazebo, a material in the file replaces the materials of the mesh.
             has_texture = kind == Kind.VISUAL and shape.rgba is None and shape.opacity == 1.0
-            copies.setdefault((kind, form, file, has_texture), []).append(element)
+            copies[kind, form, file, has_texture].append(element)
     surfaces: list[Surface] = []
-    not_drawn: dict[str, list[str]] = {}
+    not_drawn: dict[str, list[str]] = defaultdict(list)
     triangle_count = 0
     for (kind, form, file, has_texture), same in copies.items():
         mesh = meshes.mesh(form, file, size_m)
         if mesh.reason:
-            not_drawn.setdefault(mesh.reason, []).extend([form.mesh_uri] * len(same))
+            not_drawn[mesh.reason] += [form.mesh_uri] * len(same)
         triangle_count += sum(len(part.faces) for part in mesh.parts)
         if len(surfaces) + len(mesh.parts) > MOST_SURFACES or triangle_count > MOST_TRIANGLES:
-            not_drawn.setdefault('there are too many surfaces', []).extend([''] * len(same))
+            not_drawn['there are too many surfaces'] += [''] * len(same)
             continue
         shapes = [scene.shapes[element] for element in same]
         scales = np.array([

@@ -5,28 +5,25 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import product
 import math
-from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sdf_pose_bridge.geometry.poses import PoseArray
-from sdf_pose_bridge.geometry.rotations import Floats, matrix_from_quaternion
+from sdf_pose_bridge.geometry.rotations import Floats, matrix_from_quaternion, Triple
 
 FIELD_OF_VIEW_RAD = 0.8
 """The vertical field of view of the camera."""
 
-DIRECTIONS: Mapping[str, tuple[float, float, float]] = MappingProxyType({
+DIRECTIONS: Mapping[str, Triple] = {
     # Not along z, where the picture could be turned in any way.
-    'top': (-1e-3, 0.0, 1.0),
-    'front': (1.0, 0.0, 0.0),
-    'side': (0.0, -1.0, 0.0),
-})
+    'top': (-1e-3, 0.0, 1.0), 'front': (1.0, 0.0, 0.0), 'side': (0.0, -1.0, 0.0)}
 """Direction from the middle of the picture to the camera for each view; +x is the front."""
 
-_HOME_DIRECTIONS = ((0.75, -0.5, 0.45), (0.75, 0.5, 0.45), (-0.75, -0.5, 0.45), (-0.75, 0.5, 0.45))
+_HOME_DIRECTIONS = [(x, y, 0.45) for x in (0.75, -0.75) for y in (-0.5, 0.5)]
 _MARGIN = 1.1
 _MOST_COMPARED = 300
 _OUTLIERS = 0.1
@@ -40,9 +37,10 @@ class View(NamedTuple):
     look_at: Floats
 
 
-def bounds_of_points(points: Floats) -> Floats:
-    """Return the lowest and the highest corner of points (n, 3), as an array (2, 3)."""
-    return np.array([points.min(axis=0), points.max(axis=0)])
+def bounds_of_points(*points: Floats) -> Floats:
+    """Return the lowest and the highest corner of points (..., 3), as an array (2, 3)."""
+    every = np.concatenate([each.reshape(-1, 3) for each in points])
+    return np.array([every.min(axis=0), every.max(axis=0)])
 
 
 def bounds_of_interest(origins: Floats, boxes: Floats, robot: Floats) -> Floats:
@@ -59,17 +57,16 @@ def bounds_of_interest(origins: Floats, boxes: Floats, robot: Floats) -> Floats:
     """
     if not len(origins):
         origins = np.zeros((1, 3))
-    bounds = bounds_of_points(np.concatenate([
-        np.quantile(origins, [_OUTLIERS], axis=0, method='lower'),
-        np.quantile(origins, [1.0 - _OUTLIERS], axis=0, method='higher'), robot]))
-    extent_m = np.linalg.norm(bounds[1] - bounds[0])
+    left_out = int(_OUTLIERS * (len(origins) - 1))
+    bounds = bounds_of_points(np.sort(origins, axis=0)[[left_out, -1 - left_out]], robot)
+    extent_m = math.dist(*bounds)
     sizes_m, middles = np.linalg.norm(boxes[:, 1] - boxes[:, 0], axis=1), boxes.mean(axis=1)
     is_near = (np.abs(middles - bounds.mean(axis=0)) <= 0.6 * np.ptp(bounds, axis=0) + 1e-6
                + 0.1 * extent_m).all(axis=1)
     chosen = boxes[is_near & (sizes_m <= extent_m)]
     if not len(chosen) and extent_m < 0.3 * sizes_m.max(initial=0.0):
         chosen = boxes
-    return bounds_of_points(np.concatenate([bounds, chosen.reshape(-1, 3)]))
+    return bounds_of_points(bounds, chosen)
 
 
 def bounds_with_axes(bounds: Floats, poses: PoseArray, length_m: float) -> Floats:
@@ -78,13 +75,10 @@ def bounds_with_axes(bounds: Floats, poses: PoseArray, length_m: float) -> Float
 
     :param bounds: shape (2, 3): the lowest and the highest corner.
     :param poses: shape (n, 7), the poses of frames.
-    :param length_m: the length of their axes.
     """
-    origins = poses[:, :3]
-    is_inside = ((bounds[0] <= origins) & (origins <= bounds[1])).all(axis=1)
-    axes = length_m * matrix_from_quaternion(poses[is_inside, 3:])
-    ends = origins[is_inside, :, np.newaxis] + axes
-    return bounds_of_points(np.concatenate([bounds, ends.transpose(0, 2, 1).reshape(-1, 3)]))
+    poses = poses[_are_inside(bounds, poses[:, :3])]
+    axes = length_m * matrix_from_quaternion(poses[:, 3:])
+    return bounds_of_points(bounds, poses[:, np.newaxis, :3] + axes.transpose(0, 2, 1))
 
 
 def view_of_bounds(bounds: Floats, direction: ArrayLike) -> View:
@@ -98,7 +92,7 @@ def view_of_bounds(bounds: Floats, direction: ArrayLike) -> View:
     backward = np.asarray(direction) / np.linalg.norm(direction)
     right = np.cross((0.0, 0.0, 1.0), backward)
     right /= np.linalg.norm(right)
-    corners = np.array(np.meshgrid(*(bounds - middle).T)).reshape(3, -1).T
+    corners = np.array([*product(*(bounds - middle).T)])
     across = np.abs(corners @ np.array([right, np.cross(backward, right)]).T).max(axis=1)
     distance_m = float((_MARGIN * across / math.tan(0.5 * FIELD_OF_VIEW_RAD)
                         + corners @ backward).max())
@@ -106,11 +100,7 @@ def view_of_bounds(bounds: Floats, direction: ArrayLike) -> View:
 
 
 def view_in_window(view: View, aspect: float) -> View:
-    """
-    Move a camera back if a window is narrow, so that it shows as much from left to right.
-
-    :param aspect: the width of the window divided by its height.
-    """
+    """Move a camera back if a window is narrow, so that it shows as much from left to right."""
     return View(view.look_at + (view.position - view.look_at) / min(aspect, 1.0), view.look_at)
 
 
@@ -122,9 +112,9 @@ def home_view(bounds: Floats, origins: Floats, boxes: Floats) -> View:
     :param origins: shape (n, 3), the origins of frames.
     :param boxes: shape (m, 2, 3), the lowest and the highest corners of bodies.
     """
-    size_m = np.linalg.norm(bounds[1] - bounds[0])
-    large = boxes[np.linalg.norm(boxes[:, 1] - boxes[:, 0], axis=1) >= 0.5 * size_m]
-    seen = origins[((bounds[0] <= origins) & (origins <= bounds[1])).all(axis=1)]
+    sizes_m = np.linalg.norm(boxes[:, 1] - boxes[:, 0], axis=1)
+    large = boxes[sizes_m >= 0.5 * math.dist(*bounds)]
+    seen = origins[_are_inside(bounds, origins)]
     views = [view_of_bounds(bounds, direction) for direction in _HOME_DIRECTIONS]
     return min(views, key=lambda view: int(_are_hidden(
         view.position, seen[:_MOST_COMPARED], large[:_MOST_COMPARED]).sum()))
@@ -136,12 +126,15 @@ def grid_spacing_m(size_m: float) -> float:
     return power * max(factor for factor in (1.0, 2.0, 5.0) if factor * power <= size_m / 10.0)
 
 
+def _are_inside(bounds: Floats, points: Floats) -> NDArray[np.bool_]:
+    return np.asarray(((bounds[0] <= points) & (points <= bounds[1])).all(axis=1))
+
+
 def _are_hidden(eye: Floats, points: Floats, boxes: Floats) -> NDArray[np.bool_]:
     """Return for each point (n, 3) whether a box (m, 2, 3) is between the eye and it."""
     ways = points - eye
     # A line along an axis never leaves the slab of a box, or never enters it.
     ways = np.where(np.abs(ways) < 1e-9, 1e-9, ways)[:, np.newaxis]
-    ends = np.sort(np.stack([(boxes[:, 0] - eye) / ways, (boxes[:, 1] - eye) / ways]), axis=0)
-    enters, leaves = ends[0].max(axis=2), ends[1].min(axis=2)
-    hides = (enters < leaves) & (leaves > 0.0) & (enters < 0.99)
-    return np.asarray(hides.any(axis=1))
+    near, far = np.sort((boxes.swapaxes(0, 1)[:, np.newaxis] - eye) / ways, axis=0)
+    enters, leaves = near.max(axis=2), far.min(axis=2)
+    return np.asarray(((enters < leaves) & (leaves > 0.0) & (enters < 0.99)).any(axis=1))

@@ -5,7 +5,8 @@
 import html
 import re
 
-from sdf_pose_bridge.cli.viewer.browser_script import html_of_data, page_with_script
+from sdf_pose_bridge.cli.viewer.browser_script import page_with_script
+from sdf_pose_bridge.cli.viewer.frame_texts import html_of_data
 
 HOSTILE = '"><script>'
 

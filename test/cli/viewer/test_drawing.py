@@ -11,10 +11,12 @@ pytest.importorskip('trimesh', reason='needs trimesh')
 pytest.importorskip('viser', reason='needs viser')
 import viser
 
+from sdf_pose_bridge.cli.printing import METRES
 from sdf_pose_bridge.cli.viewer.drawing import Drawing
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.scene.loading import load_text
+from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfOptions
 
 BOX = '<geometry><box/></geometry>'
@@ -29,15 +31,14 @@ def nodes():
 
 @pytest.fixture
 def drawing_of(nodes, mesh_reader):
-    """Returns the drawing of a model with these elements, and its poses."""
+    """Returns the drawing of a model with these elements, and its scene."""
     drawings = []
 
     def draw(content):
         text = f'<sdf version="1.11"><model name="m">{content}</model></sdf>'
         shown = ShownScene(load_text(text.encode(), 'm.sdf', shapes=True), TfOptions())
-        posed = shown.at({})
-        drawings.append(Drawing(nodes, '/drawing', mesh_reader, shown, posed, set(), set(), print))
-        return drawings[-1], posed
+        drawings.append(Drawing(nodes, '/drawing', mesh_reader, shown, set(), set(), print))
+        return drawings[-1], shown
     yield draw
     for drawing in drawings:
         drawing.remove()
@@ -54,18 +55,20 @@ def test_names_of_bodies_are_in_the_order_of_the_nodes(drawing_of):
 
 
 def test_name_of_the_selected_frame_stands_at_its_new_pose(drawing_of):
-    drawing, posed = drawing_of('<link name="a"/>')
-    frame = posed.tree.frame_ids.index('a')
-    assert json.loads(drawing.labels(posed, frame, Pose(3.0, 0.0, 1.0))) == [
+    drawing, shown = drawing_of('<link name="a"/>')
+    frame = shown.tree.frame_ids.index('a')
+    moved = shown.with_pose(frame, Pose(3.0, 0.0, 1.0))
+    assert json.loads(drawing.show(moved, frame, ROOT_IS_PARENT, METRES)) == [
         ['m', False, 0.0, 0.0, 0.0], ['a', True, 3.0, 0.0, 1.0]]
 
 
 def test_name_of_a_missing_mesh_precedes_those_of_frames(drawing_of):
     mesh = '<geometry><mesh><uri>a.stl</uri></mesh></geometry>'
-    drawing, posed = drawing_of(
+    drawing, shown = drawing_of(
         f'<link name="{"a" * 40}">'
         f'<visual name="v"><pose>0.2 1 0 0 0 0</pose>{mesh}</visual></link>')
-    assert [label[:2] for label in json.loads(drawing.labels(posed, -1, None))] == [
+    assert [label[:2] for label in json.loads(
+            drawing.show(shown, -1, ROOT_IS_PARENT, METRES))] == [
         ['a.stl?', True], ['m', False], ['a' * 40, False]]
 
 

@@ -17,10 +17,11 @@ from sdf_pose_bridge.cli.viewer.frame_texts import (
     html_of_reasons,
     rows_of_tree,
 )
+from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 HOSTILE = '<img src=x onerror=alert(1)>'
 TEXT = f"""<sdf version="1.11"><world name="w"><model name="m"><pose>1 2 3 0 0 1.5</pose>
@@ -37,15 +38,17 @@ def loaded_scene():
 @pytest.fixture
 def described(scene):
     """Returns the description of a frame in another one, without its HTML."""
-    tree = tf_tree_from_scene(scene)
-
     def describe(frame, reference=None):
-        text = html_of_frame(
-            scene, tree, tree.frame_ids.index(frame),
-            ROOT_IS_PARENT if reference is None else tree.frame_ids.index(reference),
-            Units())
-        return html.unescape(re.sub('<[^>]*>', '\n', text))
+        return html.unescape(re.sub('<[^>]*>', '\n', html_of(scene, frame, reference)))
     return describe
+
+
+def html_of(scene, frame, reference=None):
+    shown = ShownScene(scene, TfOptions())
+    ids = shown.ids
+    return html_of_frame(
+        shown, ids.index(frame), ROOT_IS_PARENT if reference is None else ids.index(reference),
+        Units())
 
 
 def test_names_and_place(described):
@@ -80,9 +83,12 @@ def test_frames_that_move_with_another_are_named(scene):
     assert html_of_moved(old, old, frame) == ''
 
 
-def test_place_of_a_frame_is_one_line_of_text():
-    assert html_of_place('<a>', 'b', Pose(x=0.5), Units()) == (
-        '<b>&lt;a&gt;</b> in b: xyz 0.5000 0.0000 0.0000 m, rpy 0.0000 0.0000 0.0000 rad')
+def test_place_of_a_frame_is_one_line_of_text(scene):
+    shown = ShownScene(scene, TfOptions())
+    frame, reference = map(shown.ids.index, (HOSTILE, 'm/l'))
+    assert html_of_place(shown.with_pose(reference, Pose(x=-0.5)), frame, reference, Units()) == (
+        f'<b>{html.escape(HOSTILE)}</b> in m/l: xyz 0.5000 0.0000 0.0000 m, '
+        'rpy 0.0000 0.0000 0.0000 rad')
 
 
 def test_first_reason_is_a_line_of_its_own():
@@ -93,9 +99,7 @@ def test_first_reason_is_a_line_of_its_own():
 
 
 def test_name_is_copied_as_it_is_shown(scene):
-    tree = tf_tree_from_scene(scene)
-    text = html_of_frame(
-        scene, tree, tree.frame_ids.index(HOSTILE), ROOT_IS_PARENT, Units())
+    text = html_of(scene, HOSTILE)
     assert f'data-copy="{html.escape(HOSTILE)}"' in text
 
 
@@ -119,9 +123,7 @@ def test_optical_frame_has_no_name_in_the_file(described):
 
 
 def test_name_is_text(scene):
-    tree = tf_tree_from_scene(scene)
-    text = html_of_frame(
-        scene, tree, tree.frame_ids.index(HOSTILE), ROOT_IS_PARENT, Units())
+    text = html_of(scene, HOSTILE)
     assert '<img' not in text
     assert html.escape(HOSTILE) in text
 

@@ -18,12 +18,17 @@ from sdf_pose_bridge.sdformat.shape_types import SHAPE_TYPES
 from sdf_pose_bridge.sdformat.shapes import Shape
 
 
+def shape_of(submesh='', name='', *, is_centered=False):
+    return Shape('mesh', (), (0.0, 0.0, 1.0), name, submesh, (1.0, 1.0, 1.0), None,
+                 is_centered=is_centered)
+
+
 @pytest.fixture
 def mesh(tmp_path):
     """Returns the mesh with this text in a file of this name, read by this process."""
     def read(name, text, submesh=''):
         (tmp_path / name).write_bytes(text if isinstance(text, bytes) else text.encode())
-        return mesh_from_file(str(tmp_path / name), submesh)
+        return mesh_from_file(str(tmp_path / name), shape_of(submesh))
     return read
 
 
@@ -33,7 +38,7 @@ def extent(mesh):
 
 
 def test_missing_file(tmp_path):
-    assert 'No such file' in mesh_from_file(str(tmp_path / 'none.stl'), '').reason
+    assert 'No such file' in mesh_from_file(str(tmp_path / 'none.stl'), shape_of()).reason
 
 
 @pytest.mark.parametrize('name', ['mesh.zip', 'mesh.3mf', 'mesh.xyz', 'mesh'])
@@ -57,7 +62,7 @@ def test_coordinate_that_is_too_large(mesh, scale):
 
 def test_named_pipe(tmp_path):
     os.mkfifo(tmp_path / 'mesh.stl')
-    assert 'not a regular file' in mesh_from_file(str(tmp_path / 'mesh.stl'), '').reason
+    assert 'not a regular file' in mesh_from_file(str(tmp_path / 'mesh.stl'), shape_of()).reason
 
 
 def test_buffer_that_is_a_named_pipe(mesh, tmp_path):
@@ -109,7 +114,7 @@ def test_group_of_an_obj_file_is_a_part(mesh, tmp_path):
 
 def test_part_with_its_middle_at_the_origin(tmp_path):
     (tmp_path / 'mesh.obj').write_text(mesh_texts.OBJ)
-    (part,) = mesh_from_file(str(tmp_path / 'mesh.obj'), 'right', is_centered=True).parts
+    (part,) = mesh_from_file(str(tmp_path / 'mesh.obj'), shape_of('right', is_centered=True)).parts
     assert part.points == pytest.approx(np.array([(-0.5, -1, 0), (0.5, -1, 0), (-0.5, 1, 0)]))
 
 
@@ -237,8 +242,7 @@ def named(reader, tmp_path):
     def read(name, text=None):
         if text is not None:
             (tmp_path / name).write_text(text)
-        shape = Shape('mesh', (), (0.0, 0.0, 1.0), name, '', (1.0, 1.0, 1.0), None)
-        return reader.mesh(shape, str(tmp_path / 'model.sdf'), 1.0)
+        return reader.mesh(shape_of(name=name), str(tmp_path / 'model.sdf'), 1.0)
     return read
 
 

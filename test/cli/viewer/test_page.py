@@ -9,10 +9,15 @@ import re
 import pytest
 
 pytest.importorskip('viser', reason='needs viser')
+import viser
+
 from sdf_pose_bridge import load
 from sdf_pose_bridge.cli.printing import Units
-from sdf_pose_bridge.cli.viewer.page import Page
+from sdf_pose_bridge.cli.viewer import page as page_module
+from sdf_pose_bridge.cli.viewer.page import Page, SelectedFrame
+from sdf_pose_bridge.cli.viewer.server import Events
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
+from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.pose_setting import PoseChange
 from sdf_pose_bridge.sdformat.file_change import FileChange
 from sdf_pose_bridge.tf.tree import TfOptions
@@ -28,9 +33,9 @@ def page_of(tmp_path, mesh_reader):
 
     def make(content, **options):
         (tmp_path / 'm.sdf').write_text(TEXT.replace('"l"/>', f'"l">{content}</link>'))
-        scene = load(tmp_path / 'm.sdf', shapes=True)
         pages.append(Page(
-            ShownScene(scene, TfOptions()), 0, Units(), mesh_reader, **options))
+            load(tmp_path / 'm.sdf', shapes=True), TfOptions(), 0, Units(), mesh_reader,
+            **options))
         return pages[-1]
     yield make
     for page in pages:
@@ -41,7 +46,7 @@ def set_switches(page, value, *labels):
     for switch in list(page._server.gui._gui_input_handle_from_uuid.values()):
         if switch.label in labels:
             switch.value = value
-    while not page._events._actions.empty() or any(
+    while not page._events.empty() or any(
             (label in page._hidden) is value for label in labels):
         page.act(0.1)
 
@@ -49,6 +54,11 @@ def set_switches(page, value, *labels):
 def nodes(page, *names):
     prefix = page._drawing._name
     return [page._server.scene.get_handle_by_name(f'{prefix}/{name}') for name in names]
+
+
+def select(page, frame):
+    page._answer(f'select {page._shown.ids.index(frame)}')
+    page._refresh()
 
 
 def labels(page):
@@ -71,8 +81,8 @@ def test_name_of_a_mesh_stands_beside_the_box_that_is_drawn_for_it(page_of):
 def test_name_moves_with_its_frame_when_the_file_is_read_again(page_of):
     sensor = '<sensor name="s" type="imu"><pose>0 0 {} 0 0 0</pose></sensor>'
     page = page_of(sensor.format(0))
-    page._selected.select(page._posed.tree.frame_ids.index('l/s'))
-    page.show(page_of(sensor.format(0.1))._shown)
+    select(page, 'l/s')
+    page.show(page_of(sensor.format(0.1))._shown.loaded)
     assert labels(page) == [['s', True, 0.0, 0.0, 0.1]]
 
 
@@ -86,7 +96,7 @@ def test_what_is_switched_off_is_not_drawn(page_of):
 def test_drawing_shares_no_name_with_the_one_before(page_of):
     page = page_of('<visual name="v"><geometry><box/></geometry></visual>')
     (before,) = nodes(page, 'visuals/0')
-    page.show(page._shown)
+    set_switches(page, False, 'grid')
     (after,) = nodes(page, 'visuals/0')
     assert before.name != after.name
     assert page._server.scene.get_handle_by_name(before.name) is None
@@ -100,23 +110,22 @@ def test_joints_move_on_while_the_page_acts(page_of):
 
 
 def test_number_that_is_typed_while_a_file_is_read_stays(page_of):
-    page = page_of('', set_pose=lambda scene, *_, **__: PoseChange(
+    page = page_of('', find_change=lambda scene, *_: PoseChange(
         FileChange(scene.path, 'utf-8', b'', b'', b'', b''), 1, scene))
-    page._selected.select(page._posed.tree.frame_ids.index('l'))
+    select(page, 'l')
+    while page._edit._numbers[0].disabled:
+        page.act(0.1)
     page._edit._numbers[0].value = 0.5
-    page.show(page._shown)
-    page._events.put(page._edit._take_numbers)
-    page.act(0.0)
+    page.show(load(page._shown.loaded.path, shapes=True))
     assert page._edit.pose.x == pytest.approx(0.5)
 
 
 def test_line_joins_the_frames_that_are_measured(page_of):
     page = page_of('<sensor name="s" type="imu"><pose>1 2 3 0 0 0</pose></sensor>')
-    frames = page._posed.tree.frame_ids
-    page._selected.select(frames.index('l'))
+    select(page, 'l')
     assert page._drawing._measured.points.shape == (0, 2, 3)
     page._selected._measure_from_here()
-    page._selected.select(frames.index('l/s'))
+    select(page, 'l/s')
     assert page._drawing._measured.points.tolist() == [[[0, 0, 0], [1, 2, 3]]]
     assert labels(page)[0] == ['3.7417 m', True, 0.5, 1.0, 1.5]
 
@@ -125,7 +134,7 @@ def test_boxes_of_one_element(page_of):
     box = '<visual name="{}"><pose>{} 0 0 0 0 0</pose><geometry><box/></geometry></visual>'
     page = page_of(box.format('a', 0) + box.format('b', 5))
     element = page._shown.loaded.names.index('m::l::b')
-    (found,) = page._drawing.boxes(page._posed, page._shown.is_in(element))
+    (found,) = page._drawing.boxes(page._shown, element)
     assert found.tolist() == [[4.5, -0.5, -0.5], [5.5, 0.5, 0.5]]
 
 
@@ -134,3 +143,40 @@ def test_page_says_so_when_collisions_are_switched_on(page_of):
     assert page.reasons == []
     set_switches(page, True, 'collisions')
     assert '1 shape cannot be drawn' in page._reasons.content
+
+
+# The selected frame
+
+def shown_scene(*frames):
+    text = ''.join(f'<frame name="{name}"/>' for name in frames)
+    scene = load_text(
+        f'<sdf version="1.11"><world name="w">{text}</world></sdf>'.encode(), 'cell.sdf')
+    return ShownScene(scene, TfOptions())
+
+
+@pytest.fixture
+def selected():
+    server = viser.ViserServer('127.0.0.1', 0, verbose=False)
+    selected = SelectedFrame(server.gui, server.gui.add_folder(''), Events())
+    selected.list_frames(shown_scene('a', 'b', 'c'))
+    yield selected
+    server.stop()
+
+
+def test_frame_that_is_gone_is_not_selected(selected):
+    selected.answer('select', 3)
+    assert selected.frame == -1
+
+
+def test_selected_frame_stays_where_others_are_listed(selected):
+    selected.answer('select', 1)
+    selected.list_frames(shown_scene('b'))
+    assert selected.frame == 0
+    selected.list_frames(shown_scene('a'))
+    assert selected.frame == -1
+
+
+def test_more_frames_than_rows(selected, monkeypatch):
+    monkeypatch.setattr(page_module, 'MOST_ROWS', 4)
+    selected.list_frames(shown_scene(*'abcdef'))
+    assert '2 more, to be found by the search' in selected._rows.content

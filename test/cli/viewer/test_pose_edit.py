@@ -11,19 +11,33 @@ pytest.importorskip('viser', reason='needs viser')
 import viser
 
 from sdf_pose_bridge.cli.printing import DEGREES, MILLIMETRES, Units
-from sdf_pose_bridge.cli.viewer.pose_edit import EditedFrame, PoseEdit
+from sdf_pose_bridge.cli.viewer.pose_edit import PoseEdit
 from sdf_pose_bridge.cli.viewer.server import Events
+from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy, rpy_from_quaternion
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.pose_setting import PoseChange
-from sdf_pose_bridge.sdformat.file_change import FileChange
+from sdf_pose_bridge.tf.tree import TfOptions
 
 TEXT = b"""<sdf version="1.11"><model name="m"><link name="l"/>
   <frame name="free"/><frame name="fixed"/></model></sdf>"""
+UNITS = Units()
 SCENE = load_text(TEXT, 'm.sdf')
 POSE = Pose(*(0.123456789, 0.0, 0.0, *quaternion_from_rpy((0.0, 0.0, 0.123456789))))
+
+
+class Change:
+    """A change of a file that is only noted."""
+
+    path = 'm.sdf'
+
+    def __init__(self, pose, written):
+        self._pose, self._written, self.undone = pose, written, self
+
+    def write(self):
+        self._written.append(self._pose)
 
 
 @pytest.fixture
@@ -31,36 +45,43 @@ def written():
     """The poses that were written, and the edit."""
     poses = []
 
-    def put(scene, element, pose, measured, *, dry_run):
-        """Refuse to place one of the frames, as the file cannot say some poses."""
-        if scene.names[element].endswith('fixed'):
+    def change(scene, element, pose, measured):
+        """Refuse some poses, as a file cannot say them."""
+        if scene.names[element].endswith('fixed') or pose.z > 5.0:
             raise ElementInvalidError('no', scene.place(element))
-        if not dry_run:
-            poses.append(pose)
-        return PoseChange(FileChange(scene.path, 'utf-8', b'', b'', b'', b''), 1, scene)
+        return PoseChange(Change(pose, poses), 1, scene)
     server = viser.ViserServer('127.0.0.1', 0, verbose=False)
-    yield poses, PoseEdit(server, put, Events(), lambda: None)
+    yield poses, PoseEdit(server, ShownScene(SCENE, TfOptions()), change, Events())
     server.stop()
 
 
-def edited(name, x=0.0):
-    element = [each.rpartition('::')[2] for each in SCENE.names].index(name)
-    return EditedFrame(
-        SCENE, element, POSE, Pose(x=x), name, lambda scene, element: POSE)
+def edited(name, x=0.0, pose=POSE, scene=SCENE):
+    """Return a scene with a frame at a pose, and the frame, relative to one at (x, 0, 0)."""
+    shown = ShownScene(scene, TfOptions())
+    frame, reference = map(shown.ids.index, (name, 'm'))
+    return shown.with_pose(frame, pose).with_pose(reference, Pose(x=x)), frame, reference
+
+
+def begin(edit, frame, units=UNITS):
+    """Edit a frame, and find out whether it can be placed."""
+    edit.refresh(*frame, units)
+    edit.look_ahead()
+    edit.refresh(*frame, units)
 
 
 def drag(edit, z):
     """Move the gizmo to (0, 0, z), as a browser does."""
     edit._gizmo.position, edit._gizmo.wxyz = (0.0, 0.0, z), (1.0, 0.0, 0.0, 0.0)
-    edit._take_gizmo()
+    edit.refresh(*edited('free'), UNITS)
 
 
 def test_cancelled_edit_moves_the_gizmo_back(written):
     _, edit = written
-    edit.begin(edited('free'), Units())
+    begin(edit, edited('free'))
     drag(edit, 1.0)
     assert [number.value for number in edit._numbers[:3]] == [0.0, 0.0, 1.0]
-    edit._cancel_edit()
+    edit.actions['cancel']()
+    edit.refresh(*edited('free'), UNITS)
     assert edit.pose is None
     assert edit._gizmo.position.tolist() == list(POSE[:3])
     assert edit._numbers[0].value == 0.1235
@@ -69,93 +90,108 @@ def test_cancelled_edit_moves_the_gizmo_back(written):
 def test_only_frames_that_can_be_placed_are_edited(written):
     _, edit = written
     for name, is_possible in (('free', True), ('fixed', False), ('free', True)):
-        edit.begin(edited(name), Units())
+        begin(edit, edited(name))
         assert edit._gizmo.visible is is_possible
         assert [number.disabled for number in edit._numbers] == [not is_possible] * 6
-        assert ('errors_of_setting' in edit.html) is not is_possible
-    edit.begin(None, Units())
+        assert ('class="errors"' in edit.html) is not is_possible
+    edit.refresh(edited('free')[0], -1, -1, UNITS)
     assert not edit._gizmo.visible
 
 
 def test_numbers_that_were_not_typed_stay_exact(written):
     poses, edit = written
-    edit.begin(edited('free'), Units(MILLIMETRES, DEGREES))
+    units = Units(MILLIMETRES, DEGREES)
+    begin(edit, edited('free'), units)
     assert [number.value for number in edit._numbers] == [123.5, 0, 0, 0, 0, 7.07]
     edit._numbers[1].value = 250.0
     edit._numbers[3].value = 90.0
-    edit._take_numbers()
-    edit._write_pose()
+    edit.refresh(*edited('free'), units)
+    edit.actions['write to file']()
     assert poses[0][:3] == pytest.approx((0.123456789, 0.25, 0.0), abs=1e-15)
     assert rpy_from_quaternion(poses[0][3:]) == pytest.approx((math.pi / 2, 0.0, 0.123456789))
 
 
+def test_typed_digits_stay(written):
+    _, edit = written
+    begin(edit, edited('free'))
+    for typed in (0.123456, 0.1234561):
+        edit._numbers[0].value = typed
+        begin(edit, edited('free'))
+        assert edit._numbers[0].value == typed
+        assert edit.pose.x == pytest.approx(typed, abs=1e-12)
+
+
 def test_typed_numbers_in_another_unit_are_asked_about(written):
     _, edit = written
-    edit.begin(edited('free'), Units())
+    begin(edit, edited('free'))
     edit._numbers[5].value = 90.0
-    edit._take_numbers()
+    begin(edit, edited('free'))
     assert 'the angles 0 0 90 are radians; did you mean degrees?' in edit.html
 
 
 def test_numbers_are_relative_to_the_reference(written):
     _, edit = written
-    edit.begin(edited('free', 1.0), Units())
+    begin(edit, edited('free', 1.0))
     assert edit._numbers[0].value == -0.8765
     edit._numbers[0].value = -1.0
-    edit._take_numbers()
+    edit.refresh(*edited('free', 1.0), UNITS)
     assert edit.pose[:3] == pytest.approx((0.0, 0.0, 0.0))
 
 
 def test_new_pose_stays_while_the_frame_does_not_move(written):
     _, edit = written
-    edit.begin(edited('free'), Units())
+    begin(edit, edited('free'))
     drag(edit, 1.0)
-    edit.begin(edited('free')._replace(scene=load_text(TEXT, 'm.sdf')), Units())
+    edit.refresh(*edited('free', scene=load_text(TEXT, 'm.sdf')), UNITS)
     assert edit.pose == Pose(z=1.0)
-    edit.begin(edited('free')._replace(pose=Pose()), Units())
+    edit.refresh(*edited('free', pose=Pose()), UNITS)
     assert edit.pose is None
 
 
 def test_scene_with_a_new_pose_is_found_until_it_is_cancelled(written):
     poses, edit = written
-    edit.begin(edited('free'), Units())
-    edit.look_ahead()
+    begin(edit, edited('free'))
     assert edit.scene_ahead is None
     drag(edit, 1.0)
-    edit.look_ahead()
+    assert edit.look_ahead()
+    assert not edit.look_ahead()
     drag(edit, 2.0)
     assert (edit.scene_ahead, poses) == (SCENE, [])
-    edit._cancel_edit()
+    edit.actions['cancel']()
     assert edit.scene_ahead is None
 
 
 def test_pose_that_cannot_be_written_is_an_error_before_it_is(written):
-    _, edit = written
-    edit.begin(edited('free'), Units())
-    drag(edit, 1.0)
-    edit._frame = edited('fixed')
+    poses, edit = written
+    begin(edit, edited('free'))
+    drag(edit, 9.0)
     edit.look_ahead()
     assert edit.scene_ahead is None
     assert 'class="errors"' in edit.html
+    edit.actions['write to file']()
+    assert poses == []
 
 
-def test_what_is_written_is_the_old_pose_then(written):
+def test_what_is_written_is_shown_until_the_file_is_read(written):
     poses, edit = written
-    edit.begin(edited('free'), Units())
+    begin(edit, edited('free'))
     drag(edit, 1.0)
-    edit._write_pose()
-    assert (poses, edit.pose) == ([Pose(z=1.0)], None)
-    assert edit._gizmo.position.tolist() == [0.0, 0.0, 1.0]
+    edit.actions['write to file']()
+    edit.refresh(*edited('free'), UNITS)
+    assert (poses, edit.pose) == ([Pose(z=1.0)], Pose(z=1.0))
+    assert 'class="difference"' not in edit.html
+    edit.refresh(*edited('free', scene=load_text(TEXT, 'm.sdf')), UNITS)
+    assert edit.pose is None
 
 
 def test_new_pose_stays_for_the_same_frame_only(written):
     _, edit = written
-    edit.begin(edited('free'), Units())
+    begin(edit, edited('free'))
     drag(edit, 1.0)
-    edit.begin(edited('free', 1.0), Units(angle=DEGREES))
+    edit.refresh(*edited('free', 1.0), Units(angle=DEGREES))
     assert edit.pose == Pose(z=1.0)
     assert 'class="difference"' in edit.html
-    edit.begin(edited('l'), Units())
+    edit.refresh(*edited('l'), UNITS)
     assert edit.pose is None
     assert 'class="difference"' not in edit.html
 
@@ -165,18 +201,19 @@ def test_only_buttons_that_can_be_used_have_labels(written):
 
     def labels():
         return re.findall('<label[^>]*>(.*?)</label>', edit.html)
-    edit.begin(edited('free'), Units())
+    begin(edit, edited('free'))
     assert labels() == []
     drag(edit, 1.0)
     assert labels() == [*edit.actions] == ['write to file', 'cancel']
-    edit._write_pose()
+    edit.actions['write to file']()
     assert labels() == ['undo the last write']
 
 
 def test_steps_are_in_the_units_of_the_numbers(written):
     _, edit = written
-    edit.begin(edited('free'), Units(MILLIMETRES, DEGREES))
+    units = Units(MILLIMETRES, DEGREES)
+    begin(edit, edited('free'), units)
     assert edit._steps.value == '1 mm, 0.1 deg'
     edit._steps.value = '10 mm, 1 deg'
-    edit._set_steps()
+    edit.refresh(*edited('free'), units)
     assert [number.step for number in edit._numbers] == pytest.approx([10.0] * 3 + [1.0] * 3)
