@@ -123,7 +123,7 @@ MISSING = '<include><uri>none.sdf</uri><name>x</name></include>'
     model_file(f'{LINK}<link name="c"/><joint name="j" type="revolute"><parent>l</parent>'
                f'<child>c</child><axis>{OLD_FLAG * 30_000}'
                '</axis></joint>', version='1.6'),
-    world_file(f'<model name="m"><link name="{"a::" * 240}l">{"<a/>" * 50_000}</link></model>',
+    world_file(f'<model name="m"><link name="{"a::" * 240}l">{"<a/>" * 30_000}</link></model>',
                version='1.7'),
     world_file(f'<model name="m"><link name="{"a::" * 5000}l"/></model>', version='1.7'),
     model_file(f'<model name="{"Ω" * 370}">{LINK}' + ''.join(
