@@ -25,7 +25,7 @@ _STYLE = """<style>
   /* A section is folded while its content, which is not its last element, is hidden. */
   .mantine-Paper-root:has(> [aria-hidden=true]:not(:last-child)) {border-width: 1px 0 0}
   .mantine-Paper-root > [aria-hidden=true] + :last-child > div {padding: 4px !important}
-  .mantine-Paper-root:has([data-strip]) {display: none}
+  div:has(> .asked), div:has(> .asked) + * {display: none}
   .over-scene {position: absolute; inset: 0; overflow: hidden; pointer-events: none}
   .axis-cross {position: absolute; right: 8px; top: 8px; width: 60px; stroke-width: 3}
   .labels div {position: absolute; padding: 0 2px; font: 12px/14px sans-serif; white-space: pre;
@@ -124,8 +124,11 @@ _SCRIPT = """<script>(() => {
     }
     return placed;
   };
-  const given = (name, otherwise) =>
-    document.querySelector(`[data-${name}]`)?.dataset[name] ?? otherwise;
+  // A folded panel gives nothing; what it gave before stays.
+  const last = {};
+  const given = (name, otherwise) => (
+    last[name] = document.querySelector(`[data-${name}]`)?.dataset[name] ?? last[name])
+    ?? otherwise;
   let listed, names;
   const namesInScene = () => {
     const text = given('names', '{"frames": [], "bodies": []}');
@@ -211,7 +214,7 @@ _SCRIPT = """<script>(() => {
     });
     if (!ask) return;
     // It is typed into a control that is not seen, with a number, as the same text is no change.
-    const input = document.querySelector('.mantine-Paper-root:has([data-strip]) input');
+    const input = document.querySelector('div:has(> .asked) + * input');
     Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, 'value').set.call(
       input, `${performance.now()} ${ask}`);
     input.dispatchEvent(new Event('input', {bubbles: true}));

@@ -162,13 +162,11 @@ class Page:
         self._errors: Iterable[str] = ()
         gui.set_panel_label(title)
         self._reasons = gui.add_html('')
-        # In the scene, as a panel that is folded gives a browser nothing.
-        self._data = self._server.scene.add_3d_gui_container('/data')
-        with self._data:
-            self._strip, self._names, self._labels, self._opacity = (
-                gui.add_html('') for _ in range(4))
-            gui.add_html(html_of_data('path', str(Path(scene.path).resolve())))
-            asked = gui.add_text('asked', '')
+        self._strip, self._names, self._labels, self._opacity = (
+            gui.add_html('') for _ in range(4))
+        gui.add_html(html_of_data('path', str(Path(scene.path).resolve())))
+        gui.add_html('<div class="asked"></div>')
+        asked = gui.add_text('asked', '')
         self._events.when(asked.on_update, lambda: self._answer(asked.value.partition(' ')[2]))
         self._edit = None if find_change is None else PoseEdit(
             self._server, self._shown, find_change, self._events)
@@ -198,7 +196,6 @@ class Page:
         self._hidden.discard('all names')
         labels = self._drawing.show(
             self._shown, ROOT_IS_PARENT, ROOT_IS_PARENT, self._units.length)
-        self._data.remove()
         return page_with_script(
             self._server.get_scene_serializer().as_html(), printable(title),
             self._names.content + html_of_data('labels', labels))
