@@ -131,8 +131,9 @@ class PoseEdit:
             text += html_of_difference(
                 self._target[1], self.pose, self._reference, self._shown_for[2])
         labels = (f'<label data-ask="{label}">{label}</label>' for label in self.actions)
-        errors = html_of_lines('errors', [*self._notes, *self._errors])
-        return f'{text}{errors}{"".join(labels)}'
+        # Before anything is changed, they are only the reason why nothing can be.
+        errors = html_of_lines('errors' if self.pose else 'errors_of_setting', self._errors)
+        return f'{text}{html_of_lines("errors", self._notes)}{errors}{"".join(labels)}'
 
     def _take(self, pose: Pose | None, *notes: str) -> None:
         self.pose, self._notes, self._is_written = pose, notes, False

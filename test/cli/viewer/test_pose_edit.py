@@ -93,7 +93,7 @@ def test_only_frames_that_can_be_placed_are_edited(written):
         begin(edit, edited(name))
         assert edit._gizmo.visible is is_possible
         assert [number.disabled for number in edit._numbers] == [not is_possible] * 6
-        assert ('class="errors"' in edit.html) is not is_possible
+        assert ('class="errors_of_setting"' in edit.html) is not is_possible
     edit.refresh(edited('free')[0], -1, -1, UNITS)
     assert not edit._gizmo.visible
 
