@@ -17,6 +17,7 @@ import numpy as np
 
 from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.geometry.poses import (
+    canonical_poses,
     canonical_relative_poses,
     Pose,
     pose_product,
@@ -71,7 +72,7 @@ class Frames(NamedTuple):
         return Frames(
             [*self.ids, *ids], np.append(self.owners, np.array(owners, np.int32)),
             np.append(self.parents, np.array(parents, np.int32)),
-            np.concatenate([self.poses, poses]))
+            np.concatenate([self.poses, canonical_poses(np.array(poses))]))
 
     def transforms(self) -> PoseArray:
         """Return the pose of each frame in its parent; the identity if it has none."""

@@ -61,6 +61,11 @@ def test_z_of_an_optical_frame_is_ahead_and_y_down():
     np.testing.assert_allclose(matrix[:3, 1], (0, 0, -1), atol=1e-15)
 
 
+def test_the_quaternion_of_an_optical_frame_is_canonical():
+    text = model_file(f'<link name="l">{camera(pose="0 0 0 0 0 -2.5")}</link>')
+    assert pose_of(tree_of(text), 'l/cam_optical')[6] >= 0
+
+
 @pytest.mark.parametrize('kind', [
     'camera', 'depth_camera', 'rgbd_camera', 'thermal_camera', 'segmentation_camera',
     'boundingbox_camera', 'wide_angle_camera', 'wideanglecamera', 'multicamera', 'thermal'])
