@@ -172,6 +172,18 @@ def test_name_stays_at_its_frame(page):
           && Math.hypot(box.left - {x}, box.top - {y}) < 2)(label.getBoundingClientRect()))""")
 
 
+def test_names_stay_while_the_panel_is_folded(shown, tmp_path):
+    with browser(tmp_path / 'browser') as page:
+        page.size(1366, 768)
+        page.open(shown.address)
+        select(page, HOSTILE)
+        page.wait_for(f'{LABELS}.length === 1')
+        page.mouse((1354, 8))
+        page.wait_for(f'{ROWS}.length === 0')
+        page.run('new Promise(drawn => requestAnimationFrame(() => requestAnimationFrame(drawn)))')
+        assert page.run(f'{LABELS}.length') == 1
+
+
 def test_names_do_not_overlap(tmp_path):
     # From the camera, the last one is a little further, and further right.
     long = 40 * 'a'
