@@ -17,6 +17,7 @@ from sdf_pose_bridge.cli.loading import (
 from sdf_pose_bridge.cli.printing import (
     add_format_argument,
     add_unit_arguments,
+    argument_type,
     print_csv,
     print_json,
     print_problems,
@@ -44,7 +45,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help='compare poses relative to this frame, by its name in SDF (robot::hand) or TF '
              '(robot/hand)')
     parser.add_argument(
-        '--tolerance', metavar='T', type=_tolerance_from_text, default=TOLERANCE,
+        '--tolerance', metavar='T', default=TOLERANCE, type=argument_type(
+            float, lambda tolerance: 0.0 <= tolerance < math.inf, 'is not a distance'),
         help='the largest distance in metres, and angle in radians, of a frame that has not '
              f'moved; by default {TOLERANCE:g}')
     add_kinds_argument(parser, 'compare only')
@@ -87,14 +89,6 @@ def run(options: argparse.Namespace) -> int:
             ('change', f'distance {units.length.name}', f'angle {units.angle.name}'),
             [_table_row(difference, units) for difference in differences])
     return 2 if errors else 1 if differences else 0
-
-
-def _tolerance_from_text(text: str) -> float:
-    tolerance = float(text)
-    if not 0.0 <= tolerance < math.inf:
-        msg = f'"{text}" is not a distance'
-        raise argparse.ArgumentTypeError(msg)
-    return tolerance
 
 
 def _table_row(difference: Difference, units: Units) -> TableRow:

@@ -47,16 +47,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if isinstance(sys.stdout, io.TextIOWrapper):
         # A character that the terminal does not have must not end the command.
         sys.stdout.reconfigure(errors='backslashreplace')
+    code = 0
     try:
         if options.version:
             print(f'sdf_pose {sdf_pose_bridge.__version__}')
-            return 0
-        if options.command is None:
+        elif options.command is None:
             parser.print_help()
-            return 0
-        # This command calls a limited process instead, as its server needs threads and time.
-        with contextlib.nullcontext() if options.run is view.run else _limited():
-            code: int = options.run(options)
+        else:
+            # View calls a limited process instead, as its server needs threads and time.
+            with contextlib.nullcontext() if options.run is view.run else _limited():
+                code = options.run(options)
         sys.stdout.flush()
     except BrokenPipeError:
         # The reader, such as head, has closed the pipe.
@@ -80,7 +80,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 130
     else:
         return code
-    print(f'sdf_pose {options.command}: {reason}', file=sys.stderr)
+    program = ' '.join(filter(None, ('sdf_pose', options.command)))
+    print(f'{program}: {reason}', file=sys.stderr)
     return 1
 
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Iterable, Mapping, Sequence
+import contextlib
 import csv
 from itertools import chain
 import json
@@ -230,14 +231,22 @@ class Units(NamedTuple):
 
 
 def argument_type(
-    convert: Callable[[str], Any], is_valid: Callable[[str], bool], rule: str,
+    convert: Callable[[str], Any], is_valid: Callable[[Any], bool], rule: str,
 ) -> Callable[[str], Any]:
-    """Return a type of an argument; a text that is not valid gives the error ``"TEXT" RULE``."""
+    """
+    Return a type of an argument.
+
+    :param convert: returns the value of a text; may raise a ValueError.
+    :param is_valid: whether a value is valid.
+    :param rule: the end of the message about another text, behind the text.
+    """
     def value_from_text(text: str) -> Any:
-        if not is_valid(text):
-            msg = f'"{text}" {rule}'
-            raise argparse.ArgumentTypeError(msg)
-        return convert(text)
+        with contextlib.suppress(ValueError):
+            value = convert(text)
+            if is_valid(value):
+                return value
+        msg = f'"{text}" {rule}'
+        raise argparse.ArgumentTypeError(msg)
     return value_from_text
 
 
@@ -268,7 +277,7 @@ def add_output_argument(
     """Add the argument ``-o``, a path whose ending, such as ``.svg``, gives the format."""
     parser.add_argument(
         '-o', dest='output', metavar='PATH', help=f'where to write {what}', type=argument_type(
-            Path, lambda text: Path(text).suffix.lower() in formats,
+            Path, lambda path: path.suffix.lower() in formats,
             f'must end with one of {", ".join(formats)}'))
 
 

@@ -55,7 +55,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add_unit_arguments(parser, 'degrees')
     parser.add_argument(
         '--depth', metavar='N', default=math.inf,
-        type=argument_type(int, str.isdecimal, 'is not a number of levels'),
+        type=argument_type(int, lambda depth: depth >= 0, 'is not a number of levels'),
         help='print N levels below the root, and the number of frames below them')
     parser.add_argument(
         '--match', metavar='GLOB', default='',
@@ -149,7 +149,8 @@ def _in_branches(
     children: dict[int, list[int]] = {}
     for index in compress(range(len(frames)), is_shown):
         children.setdefault(parents[index], []).append(index)
-    if not children.get(0) and len(children.get(-1, ())) > 1:
+    has_root_frame = frames[0][1].kind == 'root'
+    if has_root_frame and not children.get(0) and len(children.get(-1, ())) > 1:
         # Nothing is below the root frame, as in the file of a robot that odometry places.
         children[-1].remove(0)
     lines: list[tuple[int, str]] = []

@@ -9,7 +9,7 @@ from pathlib import Path
 import sys
 
 from sdf_pose_bridge.cli.loading import add_file_arguments, add_frame_arguments, scene_of
-from sdf_pose_bridge.cli.printing import print_problems, write_text
+from sdf_pose_bridge.cli.printing import argument_type, print_problems, write_text
 from sdf_pose_bridge.tf.urdf_text import urdf_from_scene
 
 
@@ -27,20 +27,14 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help='the file to write, instead of the standard output')
     add_frame_arguments(parser, 'make links of', 'write')
     parser.add_argument(
-        '--frame-separator', metavar='TEXT', type=_separator_from_text, default='/',
+        '--frame-separator', metavar='TEXT', default='/', type=argument_type(
+            str, bool, 'must have at least one character, or names run together'),
         help='the text instead of "::" in the names of links; by default /')
     parser.add_argument(
         '--capsules', action='store_true',
         help='write <capsule>, which URDF has since version 1.2, instead of a cylinder and two '
              'spheres')
     parser.set_defaults(run=run)
-
-
-def _separator_from_text(text: str) -> str:
-    if not text:
-        msg = 'it must have at least one character, or names run together'
-        raise argparse.ArgumentTypeError(msg)
-    return text
 
 
 def run(options: argparse.Namespace) -> int:

@@ -87,4 +87,5 @@ def test_an_invalid_file_is_an_error(diff, run_main):
 
 @pytest.mark.parametrize('text', ['-1', 'inf', 'x'])
 def test_a_tolerance_is_a_distance(diff, text):
-    assert diff('', '', '--tolerance', text).returncode == 2
+    done = diff('', '', '--tolerance', text)
+    assert (done.returncode, f'"{text}" is not a distance' in done.stderr) == (2, True)

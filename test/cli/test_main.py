@@ -76,6 +76,12 @@ def test_a_file_that_needs_too_much_is_one_sentence(files, limit, message):
     assert re.fullmatch(f'{message}\n', done.stderr)
 
 
+def test_output_that_cannot_be_written_is_one_sentence(sdf_pose_in_shell):
+    done = sdf_pose_in_shell('--version > /dev/full')
+    assert done.stderr == (
+        'sdf_pose: the output cannot be written: no space left on device\n')
+
+
 def test_a_lack_of_memory_is_one_sentence(sdf_pose_in_shell, files):
     (files / 'large.sdf').write_text(model_file(''.join(
         f'<link name="l{i}"/>' for i in range(200_000))), encoding='utf-8')

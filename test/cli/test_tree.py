@@ -92,6 +92,13 @@ def test_scope_of_some_kinds(tree):
     assert names_in(tree('--scope', '--kinds', 'link')) == ['__root__', 'base', 'hand']
 
 
+def test_scope_has_worlds_that_are_empty(run_main, files):
+    (files / 'worlds.sdf').write_text(
+        '<sdf version="1.10"><world name="v"/><world name="w"/></sdf>')
+    done = run_main('tree', '--scope', 'worlds.sdf')
+    assert names_in(done.stdout.splitlines()[1:]) == ['v', 'w']
+
+
 def test_depth_hides_what_is_deeper_and_says_how_much(tree):
     lines = tree('--depth', '1')
     assert names_in(lines) == ['base', 'arm', 'hand', '1']
