@@ -175,11 +175,11 @@ def _converted(
         result = target.from_common(common)
     if source.has_rpy and target.has_rpy:
         # Rounding must not change angles that are already canonical.
-        angles = rows[:, -3:]
-        are_canonical = are_canonical_angles(angles.T, source.largest)
+        are_canonical = are_canonical_angles(rows[:, -3:].T, source.largest)
+        angles = rows[are_canonical, -3:]
         if target.largest != source.largest:
             angles = angles * target.largest / source.largest
-        np.copyto(result[:, -3:], angles, where=are_canonical[:, np.newaxis])
+        result[are_canonical, -3:] = angles
     result += 0.0  # no negative zeros
     is_finite = np.isfinite(result)
     if not is_finite.all():

@@ -230,6 +230,12 @@ def test_every_format_converts_to_every_other_and_back(source, target):
     assert largest_angle(common[:, 3:], common_again[:, 3:]) <= 8 * MAX_ANGLE
 
 
+@pytest.mark.filterwarnings('error')
+def test_largest_angles_are_wrapped_without_a_warning():
+    row = (0.0, 0.0, 0.0, 1e308, 0.0, 0.0)
+    assert abs(converted_poses(row, 'sdf_rpy', 'sdf_rpy_degrees')[3]) < 180.0
+
+
 @every_format
 def test_results_have_no_negative_zeros(name):
     row = (-0.0, -0.0, -0.0, -0.0, -0.0, -0.0, -1.0)
