@@ -12,7 +12,7 @@ pytest.importorskip('viser', reason='needs viser')
 import viser
 
 from sdf_pose_bridge.cli.printing import METRES
-from sdf_pose_bridge.cli.viewer.drawing import Drawing
+from sdf_pose_bridge.cli.viewer.drawing import Drawing, VisiblePart
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.scene.loading import load_text
@@ -37,7 +37,8 @@ def drawing_of(nodes, mesh_reader):
     def draw(content):
         text = f'<sdf version="1.11"><model name="m">{content}</model></sdf>'
         shown = ShownScene(load_text(text.encode(), 'm.sdf', shapes=True), TfOptions())
-        drawings.append(Drawing(nodes, '/drawing', mesh_reader, shown, set(), set(), print))
+        drawings.append(Drawing(
+            nodes, '/drawing', VisiblePart(shown, mesh_reader, set()), print))
         return drawings[-1], shown
     yield draw
     for drawing in drawings:
@@ -48,7 +49,7 @@ def test_names_of_bodies_are_in_the_order_of_the_nodes(drawing_of):
     drawing, _ = drawing_of(
         f'<link name="a"><visual name="v">{BOX}</visual><collision name="c">{BOX}</collision>'
         f'</link><link name="b"><visual name="v">{BOX}</visual></link>')
-    assert json.loads(drawing.names)['bodies'] == [
+    assert json.loads(drawing.visible.names)['bodies'] == [
         ['a, visual v', 'b, visual v'], ['a, collision c']]
     assert [copies.name for copies, _ in drawing._copies] == [
         '/drawing/visuals/0', '/drawing/collisions/1']
@@ -86,4 +87,4 @@ def test_axes_are_short_where_frames_are_many_or_near(drawing_of, places_m, part
     drawing, _ = drawing_of(''.join(
         f'<link name="a{number}"><pose>{x_m} 0 0 0 0 0</pose></link>'
         for number, x_m in enumerate(places_m)))
-    assert drawing.axes_length_m == pytest.approx(10.0 * part)
+    assert drawing.visible.axes_length_m == pytest.approx(10.0 * part)

@@ -4,6 +4,7 @@
 
 import math
 import re
+import threading
 
 import pytest
 
@@ -51,7 +52,8 @@ def written():
             raise ElementInvalidError('no', scene.place(element))
         return PoseChange(Change(pose, poses), 1, scene)
     server = viser.ViserServer('127.0.0.1', 0, verbose=False)
-    yield poses, PoseEdit(server, ShownScene(SCENE, TfOptions()), change, Events())
+    yield poses, PoseEdit(
+        server, ShownScene(SCENE, TfOptions()), change, Events(threading.Event()))
     server.stop()
 
 
