@@ -332,6 +332,7 @@ class Pages:
 
     def html(self, title: str) -> str:
         """Return the scene with all names, without controls, as a page that needs no network."""
+        # Nothing can be selected there.
         labels = Drawing(self._server.scene, '/drawing', self._visible, print).show(
             self._shown, ROOT_IS_PARENT, ROOT_IS_PARENT, self._units.length)
         return page_with_script(

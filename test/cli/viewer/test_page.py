@@ -5,13 +5,11 @@
 import html
 import json
 import re
-import threading
-from types import SimpleNamespace
+from threading import Event
 
 import pytest
 
 pytest.importorskip('viser', reason='needs viser')
-import viser
 
 from sdf_pose_bridge import load
 from sdf_pose_bridge.cli.printing import Units
@@ -29,23 +27,19 @@ MESH = '<geometry><mesh><uri>&lt;b&gt;</uri></mesh></geometry>'
 
 
 @pytest.fixture
-def page_of(tmp_path, mesh_reader):
-    """Returns the page of a file whose link has this content, on a server instead of a tab."""
-    servers = []
-
-    def make(content, find_change=None):
+def scene_of(tmp_path):
+    """Returns a scene with a link of this content."""
+    def make(content):
         (tmp_path / 'm.sdf').write_text(TEXT.replace('"l"/>', f'"l">{content}</link>'))
-        servers.append(viser.ViserServer('127.0.0.1', 0, verbose=False))
-        servers[-1].camera = SimpleNamespace(aspect=1.0, image_width=1000)
-        return Page(servers[-1], shown_scene_of(tmp_path / 'm.sdf'), threading.Event(), Units(),
-                    mesh_reader, find_change)
-    yield make
-    for server in servers:
-        server.stop()
+        return ShownScene(load(tmp_path / 'm.sdf', shapes=True), TfOptions())
+    return make
 
 
-def shown_scene_of(file):
-    return ShownScene(load(file, shapes=True), TfOptions())
+@pytest.fixture
+def page_of(scene_of, server, mesh_reader):
+    """Returns the page of a file whose link has this content."""
+    return lambda content, find_change=None: Page(
+        server, scene_of(content), Event(), Units(), mesh_reader, find_change)
 
 
 def set_switches(page, value, *labels):
@@ -83,11 +77,11 @@ def test_name_of_a_mesh_stands_beside_the_box_that_is_drawn_for_it(page_of):
     assert labels(page) == [['<b>?', True, 0.0, 0.0, 0.5]]
 
 
-def test_name_moves_with_its_frame_when_the_file_is_read_again(page_of):
+def test_name_moves_with_its_frame_when_the_file_is_read_again(page_of, scene_of):
     sensor = '<sensor name="s" type="imu"><pose>0 0 {} 0 0 0</pose></sensor>'
     page = page_of(sensor.format(0))
     select(page, 'l/s')
-    page.show(page_of(sensor.format(0.1))._shown)
+    page.show(scene_of(sensor.format(0.1)))
     assert labels(page) == [['s', True, 0.0, 0.0, 0.1]]
 
 
@@ -114,14 +108,14 @@ def test_joints_move_on_while_the_page_acts(page_of):
     assert list(moves) == [None]
 
 
-def test_number_that_is_typed_while_a_file_is_read_stays(page_of):
+def test_number_that_is_typed_while_a_file_is_read_stays(page_of, scene_of):
     page = page_of('', find_change=lambda scene, *_: PoseChange(
         FileChange(scene.path, 'utf-8', b'', b'', b'', b''), 1, scene))
     select(page, 'l')
     while page._edit._numbers[0].disabled:
         page.act()
     page._edit._numbers[0].value = 0.5
-    page.show(shown_scene_of(page._shown.loaded.path))
+    page.show(scene_of(''))
     assert page._edit.pose.x == pytest.approx(0.5)
 
 
@@ -160,12 +154,10 @@ def shown_scene(*frames):
 
 
 @pytest.fixture
-def selected():
-    server = viser.ViserServer('127.0.0.1', 0, verbose=False)
-    selected = SelectedFrame(server.gui, server.gui.add_folder(''), Events(threading.Event()))
+def selected(server):
+    selected = SelectedFrame(server.gui, server.gui.add_folder(''), Events(Event()))
     selected.list_frames(shown_scene('a', 'b', 'c'))
-    yield selected
-    server.stop()
+    return selected
 
 
 def test_frame_that_is_gone_is_not_selected(selected):
