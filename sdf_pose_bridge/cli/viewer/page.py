@@ -168,11 +168,7 @@ class Page:
             self._look('home')
 
     def show(self, shown: ShownScene) -> None:
-        """
-        Show a scene instead of the one before.
-
-        Hidden groups, the selected frame and the positions of joints stay.
-        """
+        """Show another scene; hidden groups, the selected frame and positions of joints stay."""
         before, self._shown = self._shown, shown
         with self._client.atomic():
             if {*shown.labels} != {*before.labels}:
@@ -344,11 +340,7 @@ class Pages:
         self._server.stop()
 
     def show(self, scene: Scene) -> None:
-        """
-        Show a scene instead of the one before.
-
-        :raises SdfError: as the constructor does.
-        """
+        """Show another scene; raise an SdfError as the constructor does."""
         self._shown = ShownScene(scene, self._options)
         self.show_errors(())
         for page in self._pages.values():
