@@ -102,24 +102,24 @@ def run(options: argparse.Namespace) -> int:
         load, read_since_ns = partial(_scene, process, options), time.time_ns()
         scene = load()
         print_problems((), scene.warnings, sys.stderr)
-        page = viewer.Page(
+        pages = viewer.Pages(
             scene, tf_options_from_arguments(options), 0 if options.output else options.port,
             Units(options.length_unit, options.angle_unit),
             viewer.MeshReader(resource_finder(options.resource_paths, os.environ), process),
             partial(pose_change, load=load) if options.edit else None)
-        with contextlib.closing(page):
-            for line in page.reasons:
+        with contextlib.closing(pages):
+            for line in pages.reasons:
                 print(f'sdf_pose view: {line}', file=sys.stderr)
             if options.output is not None:
-                _write(page.html(options.files[0]), options.output)
+                _write(pages.html(options.files[0]), options.output)
                 return 0
-            _open(page.address, options.port)
+            _open(pages.address, options.port)
             watcher = FileWatcher()
             # The standard input cannot be read again.
             watcher.watch(
                 () if options.files[0] == STANDARD_INPUT else scene.files, read_since_ns)
             while True:
-                _follow(page, watcher, load)
+                _follow(pages, watcher, load)
 
 
 def _viewer() -> ModuleType:
@@ -166,20 +166,20 @@ def _open(address: str, port: int) -> None:
     webbrowser.open(address)
 
 
-def _follow(page: Any, watcher: FileWatcher, load: Callable[[], Scene]) -> None:
+def _follow(pages: Any, watcher: FileWatcher, load: Callable[[], Scene]) -> None:
     """Process requests, and show the file again if it or an included file has changed."""
-    page.act(_PERIOD_S)
+    pages.act(_PERIOD_S)
     if not watcher.has_changed():
         return
     # Some editors write in steps, and a file that has just changed would be read twice.
-    page.act(_SETTLING_S)
+    pages.act(_SETTLING_S)
     read_since_ns = time.time_ns()
     try:
         scene = load()
         watcher.watch(scene.files, read_since_ns)
-        page.show(scene)
+        pages.show(scene)
     except SdfError as error:
-        page.show_errors(map(str, error.errors))
+        pages.show_errors(map(str, error.errors))
 
 
 def _write(html: str, path: Path) -> None:

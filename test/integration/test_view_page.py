@@ -149,6 +149,17 @@ def test_selected_frame_and_errors_are_in_view(sized_page, shown):
     sized_page.wait_for(is_in_window("document.querySelector('.strip .errors')"))
 
 
+def test_each_tab_has_its_own_selection(page, shown, tmp_path):
+    with browser(tmp_path / 'browser') as other:
+        other.size(1366, 768)
+        other.open(shown.address)
+        for tab, name in ((page, 'slide'), (other, 'base'), (page, 'follower')):
+            select(tab, name)
+            tab.wait_for(f"document.querySelector('.strip').innerText.includes('arm/{name} in')")
+        assert other.run("""['.rows .selected', '.strip b'].map(
+            found => document.querySelector(found).textContent)""") == ['base', 'arm/base']
+
+
 def test_tree_scrolls_to_the_frame_that_is_selected_in_the_scene(page, shown):
     frames = ''.join(f'<frame name="f{number}"/>' for number in range(60))
     shown.file.write_text(TEXT.replace('</world>', f'{frames}</world>'))

@@ -190,7 +190,7 @@ _SCRIPT = """<script>(() => {
   strip.className = 'strip';
   let shownInStrip = '';
   new MutationObserver(() => {
-    const text = given('strip', shownInStrip);
+    const text = given('errors', '') + given('strip', '');
     if (text === shownInStrip) return;
     shownInStrip = strip.innerHTML = text;
     strip.style.maxWidth = `${document.querySelector('canvas').clientWidth - 16}px`;

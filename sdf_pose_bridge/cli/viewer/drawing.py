@@ -1,10 +1,10 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Draw a scene by viser: axes, names, lines and surfaces."""
+"""Choose the part of a scene that is not hidden, and draw it by viser."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from itertools import islice
 import json
 import math
@@ -55,25 +55,20 @@ _LIGHTS = ((1.9, (0.35, -0.6, 1.0)), (0.8, (-0.6, 0.8, 0.4)))
 """The intensity of each light, and the direction to it."""
 
 
-class Drawing:
+class VisiblePart:
     """
-    The nodes that show a scene, until they are removed.
+    The frames and bodies of a scene that are not hidden.
 
-    :param name: the name of their parent node. It must differ from the previous one, as a browser
-        mixes up nodes that are removed and added again at once.
-    :param hidden: the groups and kinds of frames that are not drawn.
-    :param hidden_ids: the ids of frames that are not drawn, with all that is in them.
-    :param select: called with the clicked frame, an index into the TF tree.
+    :param hidden: the groups and kinds of frames that are hidden.
+    :param hidden_ids: the ids of frames that are hidden, with all that is in them.
     """
 
     def __init__(
-        self, nodes: viser.SceneApi, name: str, meshes: MeshReader, shown: ShownScene,
-        hidden: set[str], hidden_ids: set[str], select: Callable[[int], None],
+        self, shown: ShownScene, meshes: MeshReader,
+        hidden: Collection[str] = HIDDEN_AT_FIRST, hidden_ids: Collection[str] = (),
     ) -> None:
         scene, tree = shown.scene, shown.tree
-        self._nodes, self._name, self._select = nodes, name, select
-        self._node = nodes.add_frame(name, show_axes=False)
-        self._hidden = hidden
+        self.shown, self.hidden = shown, frozenset(hidden)
         ids, elements = np.array(tree.frame_ids, object), tree.elements
         is_hidden = np.isin(ids, [*hidden_ids])
         is_shown = shown.is_in_model & ~shown.is_in(elements[is_hidden].tolist())
@@ -81,36 +76,64 @@ class Drawing:
         elements = np.where(elements < 0, elements[np.maximum(tree.parents, 0)], elements)
         self.frames = np.flatnonzero(
             is_shown[elements] & ~np.isin(shown.labels, [*hidden]) & ~is_hidden)
-        """The frames that are drawn, indices into the TF tree."""
+        """The frames, indices into the TF tree."""
         bodies = [element for element in scene.shapes if is_shown[element]
                   and f'{Kind(scene.kinds[element]).label}s' not in hidden]
         origins = tree.poses[:, :3]
-        self._surfaces, not_drawn = surfaces_from_scene(
+        self.surfaces, not_drawn = surfaces_from_scene(
             scene, bodies, _extent_m(origins, scene.poses[bodies, :3]), meshes)
+        """The surfaces of visuals and collisions."""
         self.reasons = lines_from_not_drawn(not_drawn)
         """Lines that say which visuals and collisions cannot be drawn."""
         self.names = json.dumps({
             'frames': [printable(ids[frame]) for frame in self.frames],
-            'bodies': [_names_of_bodies(shown, surface) for surface in self._surfaces]})
+            'bodies': [_names_of_bodies(shown, surface) for surface in self.surfaces]})
         """The names that the page shows at the pointer: those of all axes, and of the copies of
         each surface, in the order of the nodes."""
         self._bodies = np.array(
-            [element for surface in self._surfaces for element in surface.elements], int)
-        boxes = boxes_of_surfaces(scene, self._surfaces)
+            [element for surface in self.surfaces for element in surface.elements], int)
+        boxes = boxes_of_surfaces(scene, self.surfaces)
         self.size_m = _extent_m(origins, boxes)
         """The extent of everything."""
         origins = origins[self.frames]
         bounds = bounds_of_interest(origins, boxes, np.concatenate([
             origins[shown.is_in_robot[elements[self.frames]]],
             boxes[shown.is_in_robot[self._bodies]].mean(axis=1)]))
-        view_m = math.dist(*bounds) or self.size_m
-        self.axes_length_m = length_m = _length_of_axes(tree, view_m)
-        self.bounds = bounds_with_axes(bounds, tree.poses[self.frames], length_m)
+        self.view_m = math.dist(*bounds) or self.size_m
+        """The extent of the first view, without axes."""
+        self.axes_length_m = _length_of_axes(tree, self.view_m)
+        self.bounds = bounds_with_axes(bounds, tree.poses[self.frames], self.axes_length_m)
         """The lowest and the highest corner of the first view, shape (2, 3)."""
         self.home = home_view(self.bounds, origins, boxes)
         """The first view."""
         sizes_m = np.linalg.norm(boxes[:, 1] - boxes[:, 0], axis=1)
-        self._add_surroundings(view_m, boxes[sizes_m <= view_m, 0, 2].min(initial=0.0))
+        self.ground_m = boxes[sizes_m <= self.view_m, 0, 2].min(initial=0.0)
+        """The height of the ground, on which the grid is."""
+
+    def boxes(self, shown: ShownScene, element: int) -> Floats:
+        """Return the boxes around the visuals and collisions in an element, shape (n, 2, 3)."""
+        is_in = shown.is_in([element])[self._bodies]
+        return np.asarray(boxes_of_surfaces(shown.scene, self.surfaces)[is_in])
+
+
+class Drawing:
+    """
+    The nodes that show a part of a scene, until they are removed.
+
+    :param name: the name of their parent node. It must differ from the previous one, as a browser
+        mixes up nodes that are removed and added again at once.
+    :param select: called with the clicked frame, an index into the TF tree.
+    """
+
+    def __init__(
+        self, nodes: viser.SceneApi, name: str, visible: VisiblePart,
+        select: Callable[[int], None],
+    ) -> None:
+        self._nodes, self._name, self._select = nodes, name, select
+        self._node = nodes.add_frame(name, show_axes=False)
+        self.visible, length_m = visible, visible.axes_length_m
+        """The part that is drawn."""
+        self._add_surroundings()
         self._marker = nodes.add_frame(
             f'{name}/selected', axes_length=2.0 * length_m, axes_radius=0.06 * length_m,
             visible=False)
@@ -121,12 +144,12 @@ class Drawing:
             for lines, color, width in (
                 ('lines to parents', _LINE_COLOR, 2.0), ('measured', _MEASURED_COLOR, 3.0)))
         self._axes = nodes.add_batched_axes(
-            f'{name}/frames', *_places(tree.poses[self.frames]), axes_length=length_m,
-            axes_radius=0.035 * length_m)
-        self._select_by_click(self._axes, self.frames)
+            f'{name}/frames', *_places(visible.shown.tree.poses[visible.frames]),
+            axes_length=length_m, axes_radius=0.035 * length_m)
+        self._select_by_click(self._axes, visible.frames)
         self._copies = [
-            (self._add_surface(number, surface, shown), surface.elements)
-            for number, surface in enumerate(self._surfaces)]
+            (self._add_surface(number, surface), surface.elements)
+            for number, surface in enumerate(visible.surfaces)]
 
     def remove(self) -> None:
         """Remove the nodes."""
@@ -144,12 +167,13 @@ class Drawing:
             line, its text, whether names do not cover it, and x, y and z of the point that it is
             right of and below.
         """
-        scene, tree = shown.scene, shown.tree
-        self._axes.batched_wxyzs, self._axes.batched_positions = _places(tree.poses[self.frames])
+        scene, tree, visible = shown.scene, shown.tree, self.visible
+        self._axes.batched_wxyzs, self._axes.batched_positions = _places(
+            tree.poses[visible.frames])
         for copies, elements in self._copies:
             copies.batched_wxyzs, copies.batched_positions = _places(scene.poses[elements])
-        children = self.frames.tolist()
-        if 'all lines to parents' in self._hidden:
+        children = visible.frames.tolist()
+        if 'all lines to parents' in visible.hidden:
             # Those from the frame to its root.
             children, index = [], frame
             while index >= 0:
@@ -170,49 +194,44 @@ class Drawing:
                 labels.append((f'{unit.factor * length_m:.{unit.digits}f} {unit.name}', True,
                                *measured[0].mean(axis=0)))
         self._measured.points = measured
-        missing = (element for surface in self._surfaces if surface.reason
+        missing = (element for surface in visible.surfaces if surface.reason
                    for element in surface.elements)
         labels += [
             (f'{_last_part(scene.shapes[element].mesh_uri)}?', True, *scene.poses[element, :3])
             for element in islice(missing, MOST_NAMES)]
-        named = self.frames[:0 if 'all names' in self._hidden else MOST_NAMES].tolist()
+        named = visible.frames[:0 if 'all names' in visible.hidden else MOST_NAMES].tolist()
         return json.dumps(labels + [
             (_last_part(tree.frame_ids[index]), index == frame, *tree.poses[index, :3])
             for index in dict.fromkeys((*named, frame)) if index >= 0])
 
-    def boxes(self, shown: ShownScene, element: int) -> Floats:
-        """Return the boxes around the visuals and collisions in an element, shape (n, 2, 3)."""
-        is_in = shown.is_in([element])[self._bodies]
-        return np.asarray(boxes_of_surfaces(shown.scene, self._surfaces)[is_in])
-
-    def _add_surroundings(self, view_m: float, ground_m: float) -> None:
-        """Add light from above and from two sides, and a grid on the ground at a height."""
-        nodes, name = self._nodes, self._name
+    def _add_surroundings(self) -> None:
+        """Add light from above and from two sides, and a grid on the ground."""
+        nodes, name, visible = self._nodes, self._name, self.visible
         nodes.add_light_hemisphere(
             f'{name}/sky', ground_color=_LIGHT_FROM_BELOW, intensity=1.7)
         # Far away and without decay, so that their rays are parallel.
         for number, (intensity, direction) in enumerate(_LIGHTS):
             nodes.add_light_point(
                 f'{name}/sun {number}', intensity=intensity, decay=0.0,
-                position=tuple(100.0 * self.size_m * np.array(direction)))
-        if 'grid' in self._hidden:
+                position=tuple(100.0 * visible.size_m * np.array(direction)))
+        if 'grid' in visible.hidden:
             return
-        spacing_m = grid_spacing_m(view_m)
-        middle = np.round(self.bounds.mean(axis=0)[:2] / spacing_m) * spacing_m
-        width_m = 2.0 * spacing_m * np.ceil(view_m / spacing_m)
+        spacing_m = grid_spacing_m(visible.view_m)
+        middle = np.round(visible.bounds.mean(axis=0)[:2] / spacing_m) * spacing_m
+        width_m = 2.0 * spacing_m * np.ceil(visible.view_m / spacing_m)
         # A little above the floors of many files.
-        height_m = ground_m + 0.001 * view_m
+        height_m = visible.ground_m + 0.001 * visible.view_m
         nodes.add_grid(
             f'{name}/grid', width_m, width_m, cell_size=spacing_m, section_size=5.0 * spacing_m,
             cell_color=_GRID_COLOR, section_color=_GRID_SECTION_COLOR, shadow_opacity=0.0,
-            fade_distance=4.0 * view_m, position=(*middle, height_m))
-        to_camera = 0.3 * (self.home.position - self.home.look_at)[:2]
+            fade_distance=4.0 * visible.view_m, position=(*middle, height_m))
+        to_camera = 0.3 * (visible.home.position - visible.home.look_at)[:2]
         nodes.add_label(
             f'{name}/grid spacing', f'grid {spacing_m:g} m', font_screen_scale=0.8,
             position=(*(middle + spacing_m * np.round(to_camera / spacing_m)), height_m))
 
-    def _add_surface(self, number: int, surface: Surface, shown: ShownScene) -> Any:
-        is_collision = surface.kind == Kind.COLLISION
+    def _add_surface(self, number: int, surface: Surface) -> Any:
+        is_collision, shown = surface.kind == Kind.COLLISION, self.visible.shown
         name = f'{self._name}/{surface.kind.label}s/{number}'
         places = _places(shown.scene.poses[surface.elements])
         if surface.part.glb:

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The page: its server, its controls and their actions."""
+"""The page: its server, its controls in each tab of a browser, and their actions."""
 
 from __future__ import annotations
 
@@ -8,12 +8,13 @@ from collections.abc import Iterable
 from functools import partial
 from itertools import cycle, islice
 from pathlib import Path
+import threading
 
 import viser
 
 from sdf_pose_bridge.cli.printing import DEGREES, RADIANS, Units
 from sdf_pose_bridge.cli.viewer.browser_script import page_with_script
-from sdf_pose_bridge.cli.viewer.drawing import Drawing, GROUPS, HIDDEN_AT_FIRST
+from sdf_pose_bridge.cli.viewer.drawing import Drawing, GROUPS, HIDDEN_AT_FIRST, VisiblePart
 from sdf_pose_bridge.cli.viewer.frame_texts import (
     escaped,
     html_of_data,
@@ -33,7 +34,6 @@ from sdf_pose_bridge.cli.viewer.view_point import (
     bounds_of_points,
     DIRECTIONS,
     FIELD_OF_VIEW_RAD,
-    View,
     view_in_window,
     view_of_bounds,
 )
@@ -48,6 +48,9 @@ MOST_ROWS = 300
 """Largest number of rows of the tree of frames in the page; a search finds the others."""
 
 _MOST_CHOICES = 1000
+_PANEL_WIDTH, _PANEL_PART, _LEAST_WIDTH = 360, 0.35, 720
+"""The largest width of the panel in pixels and as a part of a window, and the least width of a
+window in which it is open at first."""
 _ROWS_STYLE = ('<style>.rows{max-height:40vh;overflow:auto;margin:0 1em;font-size:0.8em}'
                '.rows div{display:flex;white-space:pre} .rows label{flex:1}'
                '.rows [data-ask]{cursor:pointer} .rows :is(b, i){width:1.2em;color:#4dabf7}'
@@ -61,9 +64,7 @@ _EYES, _FOLDS = ('\u25c9', '\u25cb'), ('\u25be', '\u25b8')
 class SelectedFrame:
     """The folder with the tree of frames, and a given one of the selected frame."""
 
-    def __init__(
-        self, gui: viser.GuiApi, folder: viser.GuiFolderHandle, events: Events,
-    ) -> None:
+    def __init__(self, gui: viser.GuiApi, folder: viser.GuiFolderHandle, events: Events) -> None:
         self._ids: tuple[str, ...] = ()
         self._frame_id = ''
         self._folded: set[str] = set()
@@ -138,98 +139,48 @@ class SelectedFrame:
 
 
 class Page:
-    """
-    The page of a file; one thread processes the requests of browsers.
-
-    :param scene: the scene that it shows at first, loaded with its shapes.
-    :param options: the elements that are frames, and the rules for their names.
-    :param port: its port, or the next one that is free; 0 for any.
-    :param units: the units of poses and sliders at first.
-    :param find_change: finds the change of a file for a pose; None if frames cannot be moved.
-    :raises SdfError: if the scene has no TF tree, or a model to show does not exist.
-    """
+    """The page of a file in one tab of a browser; ``wake`` is set when it has to act."""
 
     def __init__(
-        self, scene: Scene, options: TfOptions, port: int, units: Units, meshes: MeshReader,
-        find_change: FindChange | None = None,
+        self, client: viser.ClientHandle, shown: ShownScene, wake: threading.Event, units: Units,
+        meshes: MeshReader, find_change: FindChange | None,
     ) -> None:
-        self._options, self._shown = options, ShownScene(scene, options)
-        title = printable(Path(scene.path).name)
-        self._server, self.address = server_for_its_owner(port, title)
-        gui = self._server.gui
-        self._units, self._hidden = units, {*HIDDEN_AT_FIRST}
-        self._events, self._meshes = Events(), meshes
-        self._errors: Iterable[str] = ()
-        gui.set_panel_label(title)
+        self._client, self._shown, self._units, self._meshes = client, shown, units, meshes
+        self._events, self._hidden, gui = Events(wake), {*HIDDEN_AT_FIRST}, client.gui
+        self._dock_panel()
         self._reasons = gui.add_html('')
         self._strip, self._names, self._labels, self._opacity = (
             gui.add_html('') for _ in range(4))
-        gui.add_html(html_of_data('path', str(Path(scene.path).resolve())))
         gui.add_html('<div class="asked"></div>')
         asked = gui.add_text('asked', '')
         self._events.when(asked.on_update, lambda: self._answer(asked.value.partition(' ')[2]))
         self._edit = None if find_change is None else PoseEdit(
-            self._server, self._shown, find_change, self._events)
+            client, shown, find_change, self._events)
         folder_of_selected = gui.add_folder('Selected frame', visible=False)
         self._angles = self._add_view_controls()
         self._switches = self._add_switches()
-        self._joints = JointSliders(gui, self._shown.joints, {}, units, self._events)
+        self._joints = JointSliders(gui, shown.joints, {}, units, self._events)
         self._selected = SelectedFrame(gui, folder_of_selected, self._events)
         self._node_names = cycle(('/drawing', '/other drawing'))
-        self._shown = self._shown.at(self._joints.positions)
         self._drawing = self._new_drawing()
-        self._refresh()
-        camera = self._server.initial_camera
-        camera.position, camera.look_at = self._drawing.home
-        camera.fov = FIELD_OF_VIEW_RAD
-        camera.near, camera.far = 0.001 * self._drawing.size_m, 100.0 * self._drawing.size_m
-        self._server.on_client_connect(
-            lambda client: self._events.put(partial(self._add_client, client)))
+        self.show(shown)
+        if client.camera.aspect < 1.0:
+            self._look('home')
 
-    @property
-    def reasons(self) -> list[str]:
-        """Lines about shapes that cannot be drawn."""
-        return self._drawing.reasons
-
-    def html(self, title: str) -> str:
-        """Return the scene with all names, without controls, as a page that needs no network."""
-        self._hidden.discard('all names')
-        labels = self._drawing.show(
-            self._shown, ROOT_IS_PARENT, ROOT_IS_PARENT, self._units.length)
-        return page_with_script(
-            self._server.get_scene_serializer().as_html(), printable(title),
-            self._names.content + html_of_data('labels', labels))
-
-    def close(self) -> None:
-        """End the server."""
-        self._server.stop()
-
-    def show(self, scene: Scene) -> None:
-        """
-        Show a scene instead of the one before.
-
-        Hidden groups, the selected frame and the positions of joints stay.
-
-        :raises SdfError: as the constructor does.
-        """
-        before, self._shown = self._shown, ShownScene(scene, self._options)
-        self._errors = ()
-        with self._server.atomic():
-            if {*self._shown.labels} != {*before.labels}:
+    def show(self, shown: ShownScene) -> None:
+        """Show another scene; hidden groups, the selected frame and positions of joints stay."""
+        before, self._shown = self._shown, shown
+        with self._client.atomic():
+            if {*shown.labels} != {*before.labels}:
                 self._switches.remove()
                 self._switches = self._add_switches(self._switches.order)
             self._refresh()
 
-    def show_errors(self, lines: Iterable[str]) -> None:
-        """Show the errors of a file, a line for each, over its last scene."""
-        self._errors = tuple(lines)
-        self._refresh()
-
-    def act(self, seconds: float) -> None:
-        """Process the requests of browsers; wait no longer than this for them."""
+    def act(self) -> None:
+        """Process the requests of the tab."""
         next(self._joints.moves, None)
-        actions = self._events.asked(seconds)
-        with self._server.atomic():
+        actions = self._events.asked()
+        with self._client.atomic():
             for action in actions:
                 action()
             # While a gizmo moves, there is no time to read a file.
@@ -244,7 +195,7 @@ class Page:
         if (shown.joints, units) != (self._joints.ranges, self._joints.units):
             self._joints.folder.remove()
             self._joints = JointSliders(
-                self._server.gui, shown.joints, self._joints.positions, units, self._events,
+                self._client.gui, shown.joints, self._joints.positions, units, self._events,
                 self._joints.folder.order)
         if shown.positions != self._joints.positions:
             self._shown = shown = shown.at(self._joints.positions)
@@ -266,24 +217,26 @@ class Page:
         self._labels.content = html_of_data(
             'labels', self._drawing.show(drawn, frame, reference, units.length))
         selected.describe(html_of_frame(drawn, frame, reference, units) if frame >= 0 else '')
-        self._strip.content = html_of_data(
-            'strip', f'{html_of_lines("errors", self._errors)}{strip}')
+        self._strip.content = html_of_data('strip', strip)
 
     def _new_drawing(self) -> Drawing:
         hidden = self._hidden, self._selected.hidden
         self._drawn_for = self._shown.loaded, *map(frozenset, hidden)
-        drawing = Drawing(
-            self._server.scene, next(self._node_names), self._meshes, self._shown, *hidden,
+        visible = VisiblePart(self._shown, self._meshes, *hidden)
+        self._reasons.content = html_of_reasons(visible.reasons)
+        self._names.content = html_of_data('names', visible.names)
+        return Drawing(
+            self._client.scene, next(self._node_names), visible,
             lambda frame: self._events.put(partial(self._selected.answer, 'select', frame)))
-        self._reasons.content = html_of_reasons(drawing.reasons)
-        self._names.content = html_of_data('names', drawing.names)
-        return drawing
-
-    def _add_client(self, client: viser.ClientHandle) -> None:
-        if client.camera.aspect < 1.0:
-            self._turn(client, self._drawing.home)
 
     # Controls
+
+    def _dock_panel(self) -> None:
+        panel, width = self._client.gui.main_panel, self._client.camera.image_width
+        panel.dock_right()
+        panel.set_width(min(_PANEL_WIDTH, int(_PANEL_PART * width)))
+        if width < _LEAST_WIDTH:
+            panel.minimize()
 
     def _answer(self, ask: str) -> None:
         """Do what was clicked outside of the controls."""
@@ -295,20 +248,20 @@ class Page:
 
     def _add_switches(self, order: float | None = None) -> viser.GuiFolderHandle:
         """Add the folder "Show"."""
-        switches = self._server.gui.add_folder('Show', expand_by_default=False, order=order)
+        switches = self._client.gui.add_folder('Show', expand_by_default=False, order=order)
         with switches:
             for name in dict.fromkeys((*self._shown.labels, *GROUPS)):
                 self._add_switch(name)
         return switches
 
     def _add_switch(self, name: str) -> None:
-        switch = self._server.gui.add_checkbox(printable(name), name not in self._hidden)
+        switch = self._client.gui.add_checkbox(printable(name), name not in self._hidden)
         self._events.when(switch.on_update, lambda: (
             self._hidden.discard if switch.value else self._hidden.add)(name))
 
     def _add_view_controls(self) -> viser.GuiDropdownHandle[str]:
         """Add the folder "View"; return the unit of angles in it."""
-        gui = self._server.gui
+        gui = self._client.gui
         with gui.add_folder('View'):
             views = gui.add_button_group('view', ('home', *DIRECTIONS, 'zoom to'))
             opacity = gui.add_slider('opacity', 0.1, 1.0, 0.05, 1.0)
@@ -324,23 +277,85 @@ class Page:
         return angles
 
     def _look(self, name: str) -> None:
-        """Turn the cameras to a view; "zoom to" shows the selected frame, link or model."""
-        drawing = self._drawing
-        view = drawing.home
+        """Turn the camera to a view; "zoom to" shows the selected frame, link or model."""
+        visible, client = self._drawing.visible, self._client
+        view = visible.home
         if name in DIRECTIONS:
-            view = view_of_bounds(drawing.bounds, DIRECTIONS[name])
+            view = view_of_bounds(visible.bounds, DIRECTIONS[name])
         elif name == 'zoom to' and self._selected.frame >= 0:
             shown, frame = self._shown, self._selected.frame
-            origin, half_m = shown.tree.poses[frame, :3], 3.0 * drawing.axes_length_m
-            boxes = drawing.boxes(shown, shown.element_of(frame))
+            origin, half_m = shown.tree.poses[frame, :3], 3.0 * visible.axes_length_m
+            boxes = visible.boxes(shown, shown.element_of(frame))
             view = view_of_bounds(
                 bounds_of_points(origin - half_m, origin + half_m, boxes),
                 view.position - view.look_at)
-        for client in self._server.get_clients().values():
-            self._turn(client, view)
+        client.camera.position, client.camera.look_at = view_in_window(view, client.camera.aspect)
+        client.camera.up_direction = 0.0, 0.0, 1.0
 
-    def _turn(self, client: viser.ClientHandle, view: View) -> None:
-        with client.atomic():
-            client.camera.position, client.camera.look_at = view_in_window(
-                view, client.camera.aspect)
-            client.camera.up_direction = 0.0, 0.0, 1.0
+
+class Pages:
+    """
+    The pages of a file, one for each tab; one thread processes their requests.
+
+    :param scene: the scene that they show at first, loaded with its shapes.
+    :param options: the elements that are frames, and the rules for their names.
+    :param port: their port, or the next one that is free; 0 for any.
+    :param units: the units of poses and sliders at first.
+    :param find_change: finds the change of a file for a pose; None if frames cannot be moved.
+    :raises SdfError: if the scene has no TF tree, or a model to show does not exist.
+    """
+
+    def __init__(
+        self, scene: Scene, options: TfOptions, port: int, units: Units, meshes: MeshReader,
+        find_change: FindChange | None = None,
+    ) -> None:
+        self._options, self._units, self._shown = options, units, ShownScene(scene, options)
+        self._visible = visible = VisiblePart(
+            self._shown, meshes, HIDDEN_AT_FIRST - {'all names'})
+        self.reasons = visible.reasons
+        """Lines about shapes that cannot be drawn."""
+        self._server, self.address = server_for_its_owner(port, printable(Path(scene.path).name))
+        self._server.gui.add_html(html_of_data('path', str(Path(scene.path).resolve())))
+        self._errors = self._server.gui.add_html('')
+        camera = self._server.initial_camera
+        camera.position, camera.look_at = visible.home
+        camera.fov = FIELD_OF_VIEW_RAD
+        camera.near, camera.far = 0.001 * visible.size_m, 100.0 * visible.size_m
+        self._wake, self._pages = threading.Event(), dict[int, Page]()
+        self._new_page = partial(
+            Page, wake=self._wake, units=units, meshes=meshes, find_change=find_change)
+        self._server.on_client_connect(lambda _: self._wake.set())
+
+    def html(self, title: str) -> str:
+        """Return the scene with all names, without controls, as a page that needs no network."""
+        # Nothing can be selected there.
+        labels = Drawing(self._server.scene, '/drawing', self._visible, print).show(
+            self._shown, ROOT_IS_PARENT, ROOT_IS_PARENT, self._units.length)
+        return page_with_script(
+            self._server.get_scene_serializer().as_html(), printable(title),
+            html_of_data('names', self._visible.names) + html_of_data('labels', labels))
+
+    def close(self) -> None:
+        """End the server."""
+        self._server.stop()
+
+    def show(self, scene: Scene) -> None:
+        """Show another scene; raise an SdfError as the constructor does."""
+        self._shown = ShownScene(scene, self._options)
+        self.show_errors(())
+        for page in self._pages.values():
+            page.show(self._shown)
+
+    def show_errors(self, lines: Iterable[str]) -> None:
+        """Show the errors of a file, a line for each, over its last scene."""
+        self._errors.content = html_of_data('errors', html_of_lines('errors', lines))
+
+    def act(self, seconds: float) -> None:
+        """Process the requests of browsers; wait no longer than this for them."""
+        self._wake.wait(seconds)
+        self._wake.clear()
+        self._pages = {
+            number: self._pages.get(number) or self._new_page(client, self._shown)
+            for number, client in self._server.get_clients().items()}
+        for page in self._pages.values():
+            page.act()

@@ -35,7 +35,7 @@ class PoseEdit:
     """The folder that changes the pose of the selected frame, and the gizmo at the frame."""
 
     def __init__(
-        self, server: viser.ViserServer, shown: ShownScene, find_change: FindChange,
+        self, client: viser.ClientHandle, shown: ShownScene, find_change: FindChange,
         events: Events,
     ) -> None:
         self._find_change, self._shown, self._frame = find_change, shown, -1
@@ -49,10 +49,10 @@ class PoseEdit:
         self._errors: list[str] = []
         self._undone: FileChange | None = None
         # In pixels: with lines of this width, 24 of them react to the pointer.
-        self._gizmo = server.scene.add_transform_controls(
+        self._gizmo = client.scene.add_transform_controls(
             '/gizmo', 110.0, line_width=6.0, fixed=True, depth_test=False, visible=False)
         self._placed = Pose()
-        gui = server.gui
+        gui = client.gui
         with gui.add_folder('Edit'):
             self._numbers = [gui.add_number(label, 0.0, disabled=True) for label in POSE_LABELS]
             self._steps = gui.add_dropdown('steps', ('',))

@@ -9,14 +9,15 @@ Private names of viser are used only here.
 from __future__ import annotations
 
 from collections.abc import Callable
-import contextlib
 from http import HTTPStatus
 import logging
 from pathlib import Path
-from queue import Empty, SimpleQueue
+from queue import SimpleQueue
 import re
 import secrets
+import threading
 from typing import Any
+import warnings
 
 import rich
 import viser
@@ -32,16 +33,18 @@ from sdf_pose_bridge.cli.viewer.browser_script import page_with_script
 _ADDRESS = '127.0.0.1'
 _HOSTS = r'(127\.0\.0\.1|localhost)(:[0-9]+)?'
 _PAGE_OF_VISER = Path(viser.__file__).parent / 'client/build/index.html'
-_PANEL_WIDTH, _PANEL_PART, _LEAST_WIDTH = 360, 0.35, 720
-"""The largest width of the panel in pixels and as a part of a window, and the least width of a
-window in which it is open at first."""
-_NOT_KNOWN = (
-    f'viser {viser.__version__} does not work as the releases that this is tested with '
-    f'({LIBRARIES[0]})')
 
 
-class Events(SimpleQueue[Callable[[], object]]):
-    """The requests of browsers, which viser receives in its threads, for one thread."""
+class Events:
+    """The requests of a tab, which viser receives in its threads, for one that ``wake`` wakes."""
+
+    def __init__(self, wake: threading.Event) -> None:
+        self._wake, self._asked = wake, SimpleQueue[Callable[[], object]]()
+
+    def put(self, action: Callable[[], object]) -> None:
+        """Add a function to call."""
+        self._asked.put(action)
+        self._wake.set()
 
     def when(
         self, happens: Callable[..., object], action: Callable[[], object] = lambda: None,
@@ -51,12 +54,9 @@ class Events(SimpleQueue[Callable[[], object]]):
             self.put(action)
         happens(put)
 
-    def asked(self, seconds: float) -> list[Callable[[], object]]:
-        """Return the functions to call; wait no longer than this for them."""
-        with contextlib.suppress(Empty):
-            first = self.get(timeout=seconds)
-            return [first, *(self.get_nowait() for _ in range(self.qsize()))]
-        return []
+    def asked(self) -> list[Callable[[], object]]:
+        """Return the functions to call."""
+        return [self._asked.get_nowait() for _ in range(self._asked.qsize())]
 
 
 def server_for_its_owner(port: int, title: str) -> tuple[viser.ViserServer, str]:
@@ -71,6 +71,8 @@ def server_for_its_owner(port: int, title: str) -> tuple[viser.ViserServer, str]
     rich.get_console().quiet = True
     # Else each connection that a browser opens in advance, and closes, is an error with a trace.
     logging.getLogger('websockets').setLevel(logging.CRITICAL)
+    # A tab may be closed while its page is drawn.
+    warnings.filterwarnings('ignore', '.* on a closed connection', UserWarning)
     secret = secrets.token_urlsafe(16)
     page = page_with_script(_PAGE_OF_VISER.read_text(encoding='utf-8'), title).encode()
     serve, guarded = websockets_server.serve, []
@@ -96,22 +98,15 @@ def server_for_its_owner(port: int, title: str) -> tuple[viser.ViserServer, str]
     finally:
         websockets_server.serve = serve  # type: ignore[misc]
     if not guarded:
-        raise CommandError(_NOT_KNOWN)
+        msg = (f'viser {viser.__version__} does not work as the releases that this is tested with '
+               f'({LIBRARIES[0]})')
+        raise CommandError(msg)
+    server.gui.set_panel_label(title)
     server.gui.configure_theme(show_logo=False, show_share_button=False)
-    server.on_client_connect(_dock_panel)
     # The environment map of viser makes every color pale.
     server.scene.configure_environment_map(None)
     server.scene.configure_default_lights(enabled=False)
     return server, f'http://{_ADDRESS}:{server.get_port()}/{secret}/'
-
-
-def _dock_panel(client: viser.ClientHandle) -> None:
-    # Until then, the scene is as wide as the window.
-    panel, width = client.gui.main_panel, client.camera.image_width
-    panel.dock_right()
-    panel.set_width(min(_PANEL_WIDTH, int(_PANEL_PART * width)))
-    if width < _LEAST_WIDTH:
-        panel.minimize()
 
 
 def reason_to_refuse(request: Request, secret: str) -> str:

@@ -48,7 +48,7 @@ def range_of_dof(dof: DegreeOfFreedom) -> JointRange:
 
 class ShownScene:
     """
-    A scene as the page shows it, at some positions of its joints; at first as it was loaded.
+    A scene as the page shows it, at some positions of its joints; at first where they start.
 
     :param loaded: the scene, loaded with its shapes.
     :param options: the elements that are frames, and the rules for their names.
@@ -56,15 +56,7 @@ class ShownScene:
     """
 
     def __init__(self, loaded: Scene, options: TfOptions) -> None:
-        self.loaded, self.scene, self._options = loaded, loaded, options
-        self.positions: Mapping[str, float] = {}
-        """The positions of joints, in radians or metres; the others are at zero."""
-        self.tree = tf_tree_from_scene(loaded, options)
-        """The TF tree at these positions."""
-        self.ids: Sequence[str] = (*self.tree.frame_ids, self.tree.root_frame)
-        """The ids of all frames, and of the root frame, at the index ``ROOT_IS_PARENT``."""
-        self.labels: Sequence[str] = kind_labels_of(loaded, self.tree)
-        """The label of the kind of each frame."""
+        self.loaded, self._options = loaded, options
         dofs = JointMotion(loaded, tf_parents_from_scene(loaded)).dofs
         self.is_in_model = elements_in_model(loaded, options.model) & (loaded.roots == 0)
         """Shape (n,): whether each element is to be shown."""
@@ -72,6 +64,18 @@ class ShownScene:
             dof.name: range_of_dof(dof) for dof in dofs
             if self.is_in_model[dof.joint.element] and dof.axis.mimic is None}
         """The range of each degree of freedom that does not follow another one."""
+        self.positions: Mapping[str, float] = {
+            name: min(max(0.0, limits.lower), limits.upper)
+            for name, limits in self.joints.items()}
+        """The positions of joints, in radians or metres: at first zero, or the nearest limit."""
+        self.scene = scene_at_positions(loaded, self.positions)
+        """The scene at these positions."""
+        self.tree = tf_tree_from_scene(self.scene, options)
+        """The TF tree at these positions."""
+        self.ids: Sequence[str] = (*self.tree.frame_ids, self.tree.root_frame)
+        """The ids of all frames, and of the root frame, at the index ``ROOT_IS_PARENT``."""
+        self.labels: Sequence[str] = kind_labels_of(loaded, self.tree)
+        """The label of the kind of each frame."""
         self.is_in_robot = self.is_in(
             [loaded.top_level_element(dof.joint.element) for dof in dofs])
         """Shape (n,): whether each element is in a model that moves."""

@@ -9,10 +9,9 @@ import pytest
 
 pytest.importorskip('trimesh', reason='needs trimesh')
 pytest.importorskip('viser', reason='needs viser')
-import viser
 
 from sdf_pose_bridge.cli.printing import METRES
-from sdf_pose_bridge.cli.viewer.drawing import Drawing
+from sdf_pose_bridge.cli.viewer.drawing import Drawing, VisiblePart
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.scene.loading import load_text
@@ -22,33 +21,22 @@ from sdf_pose_bridge.tf.tree import TfOptions
 BOX = '<geometry><box/></geometry>'
 
 
-@pytest.fixture(scope='module')
-def nodes():
-    server = viser.ViserServer('127.0.0.1', 0, verbose=False)
-    yield server.scene
-    server.stop()
-
-
 @pytest.fixture
-def drawing_of(nodes, mesh_reader):
+def drawing_of(server, mesh_reader):
     """Returns the drawing of a model with these elements, and its scene."""
-    drawings = []
-
     def draw(content):
         text = f'<sdf version="1.11"><model name="m">{content}</model></sdf>'
         shown = ShownScene(load_text(text.encode(), 'm.sdf', shapes=True), TfOptions())
-        drawings.append(Drawing(nodes, '/drawing', mesh_reader, shown, set(), set(), print))
-        return drawings[-1], shown
-    yield draw
-    for drawing in drawings:
-        drawing.remove()
+        return Drawing(
+            server.scene, '/drawing', VisiblePart(shown, mesh_reader, set()), print), shown
+    return draw
 
 
 def test_names_of_bodies_are_in_the_order_of_the_nodes(drawing_of):
     drawing, _ = drawing_of(
         f'<link name="a"><visual name="v">{BOX}</visual><collision name="c">{BOX}</collision>'
         f'</link><link name="b"><visual name="v">{BOX}</visual></link>')
-    assert json.loads(drawing.names)['bodies'] == [
+    assert json.loads(drawing.visible.names)['bodies'] == [
         ['a, visual v', 'b, visual v'], ['a, collision c']]
     assert [copies.name for copies, _ in drawing._copies] == [
         '/drawing/visuals/0', '/drawing/collisions/1']
@@ -73,10 +61,10 @@ def test_name_of_a_missing_mesh_precedes_those_of_frames(drawing_of):
 
 
 @pytest.mark.parametrize(('size', 'ground_m'), [('1 1 1', -0.5), ('3 3 1', 0.0)])
-def test_ground_is_below_bodies_but_a_floor(drawing_of, nodes, size, ground_m):
+def test_ground_is_below_bodies_but_a_floor(drawing_of, server, size, ground_m):
     drawing_of(f'<link name="a"><visual name="v"><geometry><box><size>{size}</size></box>'
                '</geometry></visual></link><frame name="b"><pose>0 0 2 0 0 0</pose></frame>')
-    grid = nodes.get_handle_by_name('/drawing/grid')
+    grid = server.scene.get_handle_by_name('/drawing/grid')
     assert grid.position[2] == pytest.approx(ground_m, abs=0.01)
 
 
@@ -86,4 +74,4 @@ def test_axes_are_short_where_frames_are_many_or_near(drawing_of, places_m, part
     drawing, _ = drawing_of(''.join(
         f'<link name="a{number}"><pose>{x_m} 0 0 0 0 0</pose></link>'
         for number, x_m in enumerate(places_m)))
-    assert drawing.axes_length_m == pytest.approx(10.0 * part)
+    assert drawing.visible.axes_length_m == pytest.approx(10.0 * part)

@@ -3,11 +3,11 @@
 """How far sliders move joints; integration/test_view_page.py moves one in a browser."""
 
 import math
+from threading import Event
 
 import pytest
 
 pytest.importorskip('viser', reason='needs viser')
-import viser
 
 from sdf_pose_bridge.cli.printing import DEGREES, Units
 from sdf_pose_bridge.cli.viewer import joint_sliders
@@ -40,16 +40,14 @@ def test_joint_with_limits():
 
 
 @pytest.fixture
-def gui():
-    server = viser.ViserServer('127.0.0.1', 0, verbose=False)
-    yield server.gui
-    server.stop()
+def gui(server):
+    return server.gui
 
 
 def test_all_joints_go_home_and_to_the_middle(gui):
     ranges = {'m/j': JointRange(False, -3.0, -1.0), 'm/k': JointRange(True, 0.0, 1.0)}
     joints = JointSliders(
-        gui, ranges, {'m/k': 0.5, 'gone': 1.0}, Units(angle=DEGREES), Events())
+        gui, ranges, {'m/k': 0.5, 'gone': 1.0}, Units(angle=DEGREES), Events(Event()))
     assert joints.positions == {'m/j': -1.0, 'm/k': 0.5}
     first, second = joints._sliders.values()
     assert (first.label, second.label) == ('j', 'k')
@@ -62,11 +60,12 @@ def test_all_joints_go_home_and_to_the_middle(gui):
 def test_each_joint_moves_through_its_range_once(gui, monkeypatch):
     monkeypatch.setattr(joint_sliders, '_STEP_S', 0.001)
     ranges = {'m/j': JointRange(False, -3.0, -1.0), 'm/k': JointRange(True, 0.0, 1.0)}
-    events = Events()
+    events = Events(wake := Event())
     joints = JointSliders(gui, ranges, {'m/k': 0.5}, Units(), events)
     _, button, *sliders = gui._gui_input_handle_from_uuid.values()
     button.value = True
-    (action,) = events.asked(20.0)
+    wake.wait(20.0)
+    (action,) = events.asked()
     action()
     values = [[slider.value for slider in sliders] for _ in joints.moves]
     first, second = zip(*values, strict=True)
@@ -78,7 +77,7 @@ def test_each_joint_moves_through_its_range_once(gui, monkeypatch):
 @pytest.mark.parametrize('end', [math.pi, -math.pi])
 def test_wheel_goes_round(gui, end):
     joints = JointSliders(
-        gui, {'m/j': joint_range('revolute')}, {}, Units(), Events())
+        gui, {'m/j': joint_range('revolute')}, {}, Units(), Events(Event()))
     (slider,) = joints._sliders.values()
     slider.value = end
     joint_sliders._turn_on(slider)

@@ -5,11 +5,11 @@
 import html
 import json
 import re
+from threading import Event
 
 import pytest
 
 pytest.importorskip('viser', reason='needs viser')
-import viser
 
 from sdf_pose_bridge import load
 from sdf_pose_bridge.cli.printing import Units
@@ -27,33 +27,32 @@ MESH = '<geometry><mesh><uri>&lt;b&gt;</uri></mesh></geometry>'
 
 
 @pytest.fixture
-def page_of(tmp_path, mesh_reader):
-    """Returns the page of a file whose link has this content."""
-    pages = []
-
-    def make(content, **options):
+def scene_of(tmp_path):
+    """Returns a scene with a link of this content."""
+    def make(content):
         (tmp_path / 'm.sdf').write_text(TEXT.replace('"l"/>', f'"l">{content}</link>'))
-        pages.append(Page(
-            load(tmp_path / 'm.sdf', shapes=True), TfOptions(), 0, Units(), mesh_reader,
-            **options))
-        return pages[-1]
-    yield make
-    for page in pages:
-        page.close()
+        return ShownScene(load(tmp_path / 'm.sdf', shapes=True), TfOptions())
+    return make
+
+
+@pytest.fixture
+def page_of(scene_of, server, mesh_reader):
+    """Returns the page of a file whose link has this content."""
+    return lambda content, find_change=None: Page(
+        server, scene_of(content), Event(), Units(), mesh_reader, find_change)
 
 
 def set_switches(page, value, *labels):
-    for switch in list(page._server.gui._gui_input_handle_from_uuid.values()):
+    for switch in list(page._client.gui._gui_input_handle_from_uuid.values()):
         if switch.label in labels:
             switch.value = value
-    while not page._events.empty() or any(
-            (label in page._hidden) is value for label in labels):
-        page.act(0.1)
+    while any((label in page._hidden) is value for label in labels):
+        page.act()
 
 
 def nodes(page, *names):
     prefix = page._drawing._name
-    return [page._server.scene.get_handle_by_name(f'{prefix}/{name}') for name in names]
+    return [page._client.scene.get_handle_by_name(f'{prefix}/{name}') for name in names]
 
 
 def select(page, frame):
@@ -68,7 +67,7 @@ def labels(page):
 
 def test_page_says_what_it_does_not_draw(page_of):
     page = page_of(f'<visual name="v">{MESH}</visual>')
-    (reason,) = page.reasons
+    (reason,) = page._drawing.visible.reasons
     assert reason.startswith('1 shape cannot be drawn: the mesh "<b>": ')
     assert '&lt;b&gt;&quot;: ' in page._reasons.content
 
@@ -78,11 +77,11 @@ def test_name_of_a_mesh_stands_beside_the_box_that_is_drawn_for_it(page_of):
     assert labels(page) == [['<b>?', True, 0.0, 0.0, 0.5]]
 
 
-def test_name_moves_with_its_frame_when_the_file_is_read_again(page_of):
+def test_name_moves_with_its_frame_when_the_file_is_read_again(page_of, scene_of):
     sensor = '<sensor name="s" type="imu"><pose>0 0 {} 0 0 0</pose></sensor>'
     page = page_of(sensor.format(0))
     select(page, 'l/s')
-    page.show(page_of(sensor.format(0.1))._shown.loaded)
+    page.show(scene_of(sensor.format(0.1)))
     assert labels(page) == [['s', True, 0.0, 0.0, 0.1]]
 
 
@@ -99,24 +98,24 @@ def test_drawing_shares_no_name_with_the_one_before(page_of):
     set_switches(page, False, 'grid')
     (after,) = nodes(page, 'visuals/0')
     assert before.name != after.name
-    assert page._server.scene.get_handle_by_name(before.name) is None
+    assert page._client.scene.get_handle_by_name(before.name) is None
 
 
 def test_joints_move_on_while_the_page_acts(page_of):
     page = page_of('')
     page._joints.moves = moves = iter([None, None])
-    page.act(0.0)
+    page.act()
     assert list(moves) == [None]
 
 
-def test_number_that_is_typed_while_a_file_is_read_stays(page_of):
+def test_number_that_is_typed_while_a_file_is_read_stays(page_of, scene_of):
     page = page_of('', find_change=lambda scene, *_: PoseChange(
         FileChange(scene.path, 'utf-8', b'', b'', b'', b''), 1, scene))
     select(page, 'l')
     while page._edit._numbers[0].disabled:
-        page.act(0.1)
+        page.act()
     page._edit._numbers[0].value = 0.5
-    page.show(load(page._shown.loaded.path, shapes=True))
+    page.show(scene_of(''))
     assert page._edit.pose.x == pytest.approx(0.5)
 
 
@@ -134,13 +133,13 @@ def test_boxes_of_one_element(page_of):
     box = '<visual name="{}"><pose>{} 0 0 0 0 0</pose><geometry><box/></geometry></visual>'
     page = page_of(box.format('a', 0) + box.format('b', 5))
     element = page._shown.loaded.names.index('m::l::b')
-    (found,) = page._drawing.boxes(page._shown, element)
+    (found,) = page._drawing.visible.boxes(page._shown, element)
     assert found.tolist() == [[4.5, -0.5, -0.5], [5.5, 0.5, 0.5]]
 
 
 def test_page_says_so_when_collisions_are_switched_on(page_of):
     page = page_of(f'<collision name="c">{MESH}</collision>')
-    assert page.reasons == []
+    assert page._reasons.content == ''
     set_switches(page, True, 'collisions')
     assert '1 shape cannot be drawn' in page._reasons.content
 
@@ -155,12 +154,10 @@ def shown_scene(*frames):
 
 
 @pytest.fixture
-def selected():
-    server = viser.ViserServer('127.0.0.1', 0, verbose=False)
-    selected = SelectedFrame(server.gui, server.gui.add_folder(''), Events())
+def selected(server):
+    selected = SelectedFrame(server.gui, server.gui.add_folder(''), Events(Event()))
     selected.list_frames(shown_scene('a', 'b', 'c'))
-    yield selected
-    server.stop()
+    return selected
 
 
 def test_frame_that_is_gone_is_not_selected(selected):

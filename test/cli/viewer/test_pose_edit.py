@@ -4,11 +4,11 @@
 
 import math
 import re
+from threading import Event
 
 import pytest
 
 pytest.importorskip('viser', reason='needs viser')
-import viser
 
 from sdf_pose_bridge.cli.printing import DEGREES, MILLIMETRES, Units
 from sdf_pose_bridge.cli.viewer.pose_edit import PoseEdit
@@ -41,7 +41,7 @@ class Change:
 
 
 @pytest.fixture
-def written():
+def written(server):
     """The poses that were written, and the edit."""
     poses = []
 
@@ -50,9 +50,7 @@ def written():
         if scene.names[element].endswith('fixed') or pose.z > 5.0:
             raise ElementInvalidError('no', scene.place(element))
         return PoseChange(Change(pose, poses), 1, scene)
-    server = viser.ViserServer('127.0.0.1', 0, verbose=False)
-    yield poses, PoseEdit(server, ShownScene(SCENE, TfOptions()), change, Events())
-    server.stop()
+    return poses, PoseEdit(server, ShownScene(SCENE, TfOptions()), change, Events(Event()))
 
 
 def edited(name, x=0.0, pose=POSE, scene=SCENE):
