@@ -20,6 +20,7 @@ from sdf_pose_bridge import load
 
 LEAF = """<sdf version="1.9"><model name="leaf"><pose>0 0 1 0 0 0</pose>
 <link name="body"><pose>0 1 0 0 0 0</pose></link></model></sdf>"""
+LIGHT = '<sdf version="1.9"><light name="lamp" type="point"><pose>9 0 0 0 0 0</pose></light></sdf>'
 TWO_MODELS = ('<sdf version="1.9"><model name="a"><link name="l"/></model>'
               '<model name="b"><link name="l"/></model></sdf>')
 
@@ -77,28 +78,16 @@ def test_first_error_of_an_included_file_names_the_way_there(tmp_path):
     (include(content='<pose/><placement_frame>zzz</placement_frame>'), 'POSE_RELATIVE_TO_INVALID'),
     (include(content='<plugin name="p"/>'), 'ATTRIBUTE_MISSING'),
     (include(attributes='merge="maybe"'), 'ATTRIBUTE_INVALID'),
+    (include('light.sdf', '<static>maybe</static>'), 'ELEMENT_INVALID'),
+    (include('light.sdf', '<pose>1 2</pose>'), 'ELEMENT_INVALID'),
+    (include('nothing.sdf'), 'ELEMENT_MISSING'),
+    (include('no_model.sdf'), 'ELEMENT_MISSING'),
+    (include('two_models.sdf'), 'ELEMENT_INCORRECT_TYPE'),
 ])
 def test_wrong_include_gives_one_error_with_its_line(errors_in, tmp_path, wrong, code):
-    (error,) = errors_in('\n' + wrong)
-    assert (error.code, error.file, error.line) == (code, str(tmp_path / 'world.sdf'), 2)
-
-
-@pytest.mark.parametrize('content', ['<static>maybe</static>', '<pose>1 2</pose>'])
-def test_wrong_include_of_a_light_gives_one_error_with_its_line(errors_in, tmp_path, content):
-    light = '<sdf version="1.9"><light name="x" type="point"/></sdf>'
-    (error,) = errors_in('\n' + include('light.sdf', content), light=light)
-    assert (error.code, error.file, error.line) == (
-        'ELEMENT_INVALID', str(tmp_path / 'world.sdf'), 2)
-
-
-@pytest.mark.parametrize(('text', 'code'), [
-    ('<sdf version="1.9"/>', 'ELEMENT_MISSING'),
-    ('<sdf version="1.9"><world name="w"/></sdf>', 'ELEMENT_MISSING'),
-    (TWO_MODELS, 'ELEMENT_INCORRECT_TYPE'),
-])
-def test_file_without_one_element_at_its_top_gives_an_error_at_the_include(
-        errors_in, tmp_path, text, code):
-    (error,) = errors_in('\n' + include('bad.sdf'), bad=text)
+    (error,) = errors_in(
+        '\n' + wrong, light=LIGHT, nothing='<sdf version="1.9"/>', two_models=TWO_MODELS,
+        no_model='<sdf version="1.9"><world name="w"/></sdf>')
     assert (error.code, error.file, error.line) == (code, str(tmp_path / 'world.sdf'), 2)
 
 
@@ -202,9 +191,6 @@ def test_64_files_inside_one_another_are_read(tmp_path):
 
 
 # Includes elsewhere than in models and worlds
-
-LIGHT = '<sdf version="1.9"><light name="lamp" type="point"><pose>9 0 0 0 0 0</pose></light></sdf>'
-
 
 def in_link(content):
     return ('<model name="m"><link name="l"><pose>5 0 0 0 0 0</pose>' + content
