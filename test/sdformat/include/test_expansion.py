@@ -356,31 +356,30 @@ def test_name_or_reference_that_an_include_overrides_is_not_checked(scene_of, te
 
 # What an include overrides
 
-def test_include_without_overrides(scene_of):
-    scene = scene_of(include())
-    assert_at(scene, 'leaf::body', (0, 1, 1))
+DESK = '<frame name="desk"><pose>0 0 5 0 0 0</pose></frame>'
+TURNED = LEAF.replace('<pose>0 0 1 0 0 0', '<pose degrees="true">0 0 1 0 0 180')
+PLACED = LEAF.replace('name="leaf"', 'name="leaf" placement_frame="body"')
+OVERRIDES = {
+    'nothing': ('', LEAF, {'leaf::body': (0, 1, 1)}),
+    'the name': ('<name>n</name>', LEAF, {'n::body': (0, 1, 1)}),
+    'the pose': ('<pose relative_to="desk">1 0 0 0 0 0</pose>', LEAF, {'leaf': (1, 0, 5)}),
+    'an empty pose': ('<pose/>', LEAF, {'leaf': (0, 0, 0)}),
+    'attributes of the pose': (
+        '<pose>0 0 0 0 0 3.141592653589793</pose>', TURNED, {'leaf': (0, 0, 0, 0, 0, 1, 0)}),
+    'the placement frame': (
+        '<pose>0 0 5 0 0 0</pose><placement_frame>body</placement_frame>', LEAF,
+        {'leaf::body': (0, 0, 5), 'leaf': (0, -1, 5)}),
+    'the pose, not the placement frame': (
+        '<pose>0 0 5 0 0 0</pose>', PLACED, {'leaf::body': (0, 0, 5)}),
+}
 
 
-def test_include_has_a_name(scene_of):
-    scene = scene_of(include(content='<name>n</name>') + posed('frame', 'f', '', 'n::body'))
-    assert_at(scene, 'f', (0, 1, 1))
-
-
-def test_include_has_a_pose(scene_of):
-    scene = scene_of(
-        '<frame name="f"><pose>0 0 5 0 0 0</pose></frame>'
-        + include(content='<pose relative_to="f">1 0 0 0 0 0</pose>'))
-    assert_at(scene, 'leaf', (1, 0, 5))
-
-
-def test_empty_pose_of_an_include_is_the_identity(scene_of):
-    assert_at(scene_of(include(content='<pose/>')), 'leaf', (0, 0, 0))
-
-
-def test_pose_of_an_include_replaces_the_attributes_too(scene_of):
-    leaf = LEAF.replace('<pose>0 0 1 0 0 0', '<pose degrees="true">0 0 1 0 0 180')
-    scene = scene_of(include(content='<pose>0 0 0 0 0 3.141592653589793</pose>'), leaf=leaf)
-    assert_at(scene, 'leaf', (0, 0, 0, 0, 0, 1, 0))
+@pytest.mark.parametrize(
+    ('content', 'leaf', 'expected'), OVERRIDES.values(), ids=OVERRIDES)
+def test_include_overrides(scene_of, content, leaf, expected):
+    scene = scene_of(DESK + include(content=content), leaf=leaf)
+    for name, pose in expected.items():
+        assert_at(scene, name, pose)
 
 
 @pytest.mark.parametrize(('written', 'override', 'is_static'), [
@@ -390,19 +389,6 @@ def test_include_is_static(scene_of, written, override, is_static):
         include(content=f'<static>{override}</static>'),
         leaf=model_file(f'<static>{written}</static>{LINK}'))
     assert bool(scene.static_models) == is_static
-
-
-def test_include_has_a_placement_frame(scene_of):
-    scene = scene_of(include(
-        content='<pose>0 0 5 0 0 0</pose><placement_frame>body</placement_frame>'))
-    assert_at(scene, 'leaf::body', (0, 0, 5))
-    assert_at(scene, 'leaf', (0, -1, 5))
-
-
-def test_placement_frame_of_the_file_stays_with_the_pose_of_the_include(scene_of):
-    leaf = LEAF.replace('name="leaf"', 'name="leaf" placement_frame="body"')
-    scene = scene_of(include(content='<pose>0 0 5 0 0 0</pose>'), leaf=leaf)
-    assert_at(scene, 'leaf::body', (0, 0, 5))
 
 
 def test_file_that_is_included_twice_has_independent_copies(scene_of):
