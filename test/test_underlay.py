@@ -13,7 +13,6 @@ import sys
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-TF_MESSAGE_HASH = 'RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087'
 SHELL_TOOLS = ('bash', 'dirname', 'env', 'head')
 DISTRO = os.environ.get('ROS_DISTRO', 'jazzy')
 SUFFIX = '-'.join(['', *(name for name in (DISTRO, os.environ.get('VERSIONS')) if name)])

@@ -14,9 +14,6 @@ from sdf_pose_bridge.problems import MOST_PROBLEMS
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
 TWO = link('a') + link('b')
-LIMIT = '<limit effort="1" velocity="1"/>'
-
-
 NOT_FINITE = '<origin xyz="0 0 inf"/>'
 REFUSED = {'PARSING_ERROR': [
     (f'<robot>{link("a")}</robot>', 'the robot has no name'),
