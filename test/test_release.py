@@ -21,30 +21,41 @@ FORTHCOMING = 'Forthcoming\n-----------\n* News.\n\n'
 LAST = '0.9.0 (2026-01-01)\n------------------\n* First.\n'
 
 
-@pytest.fixture
-def git(tmp_path):
-    """Runs git in a repository that has what a release changes: ``git(*arguments)``."""
-    if shutil.which('git') is None:
-        pytest.skip('needs git')
-
+def git_in(folder):
     def run(*arguments):
         return subprocess.run(
-            ['git', '-c', 'user.name=n', '-c', 'user.email=n@n.org', *arguments], cwd=tmp_path,
-            capture_output=True, text=True, check=True).stdout.strip()
+            ['git', *arguments], cwd=folder, capture_output=True, text=True, check=True,
+        ).stdout.strip()
+    return run
 
+
+@pytest.fixture(scope='module')
+def repository(tmp_path_factory):
+    """A repository that has what a release changes, of which each test has a copy."""
+    if shutil.which('git') is None:
+        pytest.skip('needs git')
+    folder = tmp_path_factory.mktemp('repository')
     for name in MANIFESTS:
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_text('<package>\n  <version>0.9.0</version>\n</package>\n')
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text('<package>\n  <version>0.9.0</version>\n</package>\n')
     for name in CHANGELOGS:
-        (tmp_path / name).write_text(HEAD + FORTHCOMING + LAST)
-    (tmp_path / 'release').mkdir()
-    shutil.copy(ROOT / 'release/make_release.py', tmp_path / 'release')
+        (folder / name).write_text(HEAD + FORTHCOMING + LAST)
+    (folder / 'release').mkdir()
+    shutil.copy(ROOT / 'release/make_release.py', folder / 'release')
+    run = git_in(folder)
     run('init', '--quiet', '--initial-branch', 'main')
     run('config', 'user.name', 'n')
     run('config', 'user.email', 'n@n.org')
     run('add', '.')
     run('commit', '--quiet', '-m', 'first')
-    return run
+    return folder
+
+
+@pytest.fixture
+def git(repository, tmp_path):
+    """Runs git in a copy of the repository: ``git(*arguments)``."""
+    shutil.copytree(repository, tmp_path, dirs_exist_ok=True)
+    return git_in(tmp_path)
 
 
 @pytest.fixture

@@ -8,6 +8,16 @@ import pytest
 from sdf_texts import model_file
 
 
+@pytest.fixture
+def lines_of(run_main, files):
+    """Lines that ``check`` prints for a text, or for URDF."""
+    def lines(text, *arguments):
+        name = 'arm.urdf' if text.startswith('<robot') else 'arm.sdf'
+        (files / name).write_text(text)
+        return run_main('check', *arguments, name).stdout.splitlines()
+    return lines
+
+
 def test_check_prints_errors_in_the_order_of_the_file(run_main):
     done = run_main('check', 'bad.sdf')
     assert done.returncode == 1
@@ -30,17 +40,15 @@ def test_check_continues_after_an_invalid_file(run_main):
         'missing.sdf', 'bad.sdf', 'bad.sdf']
 
 
-def test_text_of_a_file_cannot_control_the_terminal(run_main, files):
-    (files / 'evil.sdf').write_text(
-        '<sdf version="1.9"><model name="m"><link name="l"/><frame name="f" attached_to="x&#10;'
-        'b.sdf:1: \x9b\u202e"/></model></sdf>')
-    (line,) = run_main('check', 'evil.sdf').stdout.splitlines()
+def test_text_of_a_file_cannot_control_the_terminal(lines_of):
+    (line,) = lines_of(model_file(
+        '<link name="l"/><frame name="f" attached_to="x&#10;b.sdf:1: \x9b\u202e"/>'))
     assert r'attached_to="x\nb.sdf:1: \x9b\u202e"' in line
 
 
-def test_message_of_the_parser_cannot_control_the_terminal(run_main, files):
-    (files / 'evil.sdf').write_text('<sdf version="1.9"><a\u202e></b></sdf>')
-    assert '\u202e' not in run_main('check', 'evil.sdf').stdout
+def test_message_of_the_parser_cannot_control_the_terminal(lines_of):
+    (line,) = lines_of('<sdf version="1.9"><a\u202e></b></sdf>')
+    assert '\u202e' not in line
 
 
 def test_process_substitution_is_read(run_main, files):
@@ -78,12 +86,11 @@ def test_a_warning_counts_in_a_strict_check(run_main, arguments, code):
     assert (done.returncode, bool(done.stdout), done.stderr) == (code, bool(code), '')
 
 
-def test_errors_and_warnings_are_in_the_order_of_lines(run_main, files):
-    (files / 'both.sdf').write_text("""<sdf version="1.9"><model name="m"><link name="l"/>
+def test_errors_and_warnings_are_in_the_order_of_lines(lines_of):
+    lines = lines_of("""<sdf version="1.9"><model name="m"><link name="l"/>
       <frame name="f" attached_to="x"/>
       <lnk/>
       <frame name="g" attached_to="y"/></model></sdf>""")
-    lines = run_main('check', 'both.sdf').stdout.splitlines()
     assert [line.split(':')[1] for line in lines] == ['2', '3', '4']
 
 
@@ -111,27 +118,25 @@ def test_a_second_world_is_a_warning(run_main, files):
     ('package://p/q', '"package://p": no package'), ('p', '"p": '), ('file://p/q', '"file://p": '),
     ('a/q', '"a/q": '),
 ])
-def test_meshes_of_a_missing_folder_are_one_warning(folder, missing, run_main, files):
+def test_meshes_of_a_missing_folder_are_one_warning(folder, missing, lines_of, files):
     (files / 'a').mkdir()
-    (files / 'arm.sdf').write_text(f"""<sdf version="1.9"><model name="m"><link name="l">
+    (line,) = lines_of(f"""<sdf version="1.9"><model name="m"><link name="l">
       <visual name="a"><geometry><mesh><uri>{folder}/1.stl</uri></mesh></geometry></visual>
       <visual name="b"><geometry><mesh><uri>{folder}/2.stl</uri></mesh></geometry></visual>
       </link></model></sdf>""")
-    (line,) = run_main('check', 'arm.sdf').stdout.splitlines()
     assert line.startswith(
         f'arm.sdf:2: WARNING: the mesh "{folder}/1.stl" is not found, like 1 more of {missing}')
 
 
-def test_meshes_that_a_package_does_not_have_are_sorted_by_line(run_main, files):
+def test_meshes_that_a_package_does_not_have_are_sorted_by_line(lines_of, files):
     (files / 'p').mkdir()
-    (files / 'arm.urdf').write_text("""<robot name="r"><link name="a">
+    lines = lines_of("""<robot name="r"><link name="a">
       <inertial><mass value="1"/>
       <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
       <visual><geometry><mesh filename="package://p/1.stl"/></geometry></visual>
       <collision><geometry><mesh filename="package://p/2.stl"/></geometry></collision>
       <visual><geometry><mesh filename="package://p/3.stl"/></geometry></visual>
-      </link></robot>""")
-    lines = run_main('check', '-I', '.', 'arm.urdf').stdout.splitlines()
+      </link></robot>""", '-I', '.')
     assert [line.split(':')[1] for line in lines] == ['4', '5', '6']
 
 
@@ -148,12 +153,11 @@ def test_shapes_of_a_file_that_is_included_twice_have_one_warning(run_main, file
     assert [line.split(':')[1] for line in lines] == ['2', '3']
 
 
-def test_a_hundred_missing_meshes_are_named_and_the_others_counted(run_main, files):
+def test_a_hundred_missing_meshes_are_named_and_the_others_counted(lines_of):
     meshes = ''.join(
         f'<visual name="v{i}"><geometry><mesh><uri>none{i}.stl</uri></mesh></geometry></visual>'
         for i in range(110))
-    (files / 'meshes.sdf').write_text(model_file(f'<link name="l">{meshes}</link>'))
-    lines = run_main('check', 'meshes.sdf').stdout.splitlines()
+    lines = lines_of(model_file(f'<link name="l">{meshes}</link>'))
     assert len(lines) == 101
     assert lines[0].endswith('and 10 more warnings')
 

@@ -12,97 +12,99 @@ def make_path(files):
     return files / 'good.sdf'
 
 
-def test_the_file_says_the_pose(run_main, path):
+@pytest.fixture(name='set_pose')
+def make_set_pose(run_main):
+    """Sets a pose in the file, and returns what is printed; ``set_pose(*arguments)``."""
+    def set_pose(*arguments):
+        done = run_main('set', 'good.sdf', *arguments)
+        assert (done.returncode, done.stderr) == (0, '')
+        return done.stdout
+    return set_pose
+
+
+@pytest.fixture
+def refused(run_main, path):
+    """Tries to set a pose, and returns the one line why not; ``refused(*arguments)``."""
+    def refused(*arguments):
+        text = path.read_text()
+        done = run_main('set', 'good.sdf', *arguments)
+        assert (done.returncode, done.stdout, path.read_text()) == (1, '', text)
+        (line,) = done.stderr.splitlines()
+        return line
+    return refused
+
+
+def test_the_file_says_the_pose(set_pose, path):
     text = path.read_text()
-    done = run_main('set', 'good.sdf', 'f', '-1e-3', '0', '0', '0', '0', '0')
-    assert done.returncode == 0, done.stderr
+    printed = set_pose('f', '-1e-3', *'00000')
     assert path.read_text() == text.replace('1 2 3 0 0 0', '-0.001 0 0 0 0 0')
-    assert done.stdout.splitlines()[:2] == ['--- good.sdf', '+++ good.sdf']
-    assert '+    <frame name="f"><pose>-0.001 0 0 0 0 0</pose></frame>' in done.stdout
-    assert done.stdout.endswith('moved with it: m, m::l\n')
+    assert printed.startswith('--- good.sdf\n+++ good.sdf\n')
+    assert '+    <frame name="f"><pose>-0.001 0 0 0 0 0</pose></frame>' in printed
+    assert printed.endswith('moved with it: m, m::l\n')
 
 
-def test_a_name_that_two_elements_have_is_printed_once(run_main, path):
+def test_a_name_that_two_elements_have_is_printed_once(set_pose, path):
     shapes = ''.join(
         f'<{tag} name="s"><geometry><sphere><radius>1</radius></sphere></geometry></{tag}>'
         for tag in ('visual', 'collision'))
     path.write_text(
         f'<sdf version="1.9"><model name="m"><link name="l">{shapes}</link></model></sdf>')
-    done = run_main('set', 'good.sdf', 'm', *'100000')
-    assert done.stdout.endswith('moved with it: m::l, m::l::s\n')
+    assert set_pose('m', *'100000').endswith('moved with it: m::l, m::l::s\n')
 
 
-def test_a_dry_run_writes_nothing(run_main, path):
+@pytest.mark.parametrize(('arguments', 'printed'), [
+    (('--dry-run', 'f', *'000000'), '+    <frame name="f"><pose>0 0 0 0 0 0</pose></frame>'),
+    (('f', *'123000'), '"f" has this pose already; the file stays as it is'),
+])
+def test_nothing_is_written_in_a_dry_run_or_where_the_pose_is_there(
+        set_pose, path, arguments, printed):
     text = path.read_text()
-    done = run_main('set', '--dry-run', 'good.sdf', 'f', *'000000')
-    assert (done.returncode, path.read_text()) == (0, text)
-    assert '+    <frame name="f"><pose>0 0 0 0 0 0</pose></frame>' in done.stdout
+    assert printed in set_pose(*arguments)
+    assert path.read_text() == text
 
 
-def test_a_frame_can_be_named_as_in_tf_and_measured_in_any_other(run_main, path):
-    done = run_main(
-        'set', 'good.sdf', 'm/l', '--relative-to', 'f', '--format', 'franka_measured',
-        '500', '0', '0', '0', '0', '90')
-    assert done.returncode == 0, done.stderr
+def test_a_frame_can_be_named_as_in_tf_and_measured_in_any_other(set_pose, path):
+    set_pose('m/l', '--relative-to', 'f', '--format', 'franka_measured', '500', *'0000', '90')
     x, *_, qz, qw = load(path).pose('m::l', 'f')
     assert (x, qz, qw) == pytest.approx((0.5, 0.5 ** 0.5, 0.5 ** 0.5), abs=1e-9)
 
 
-def test_a_rotation_leaves_the_position(run_main, path):
-    done = run_main('set', 'good.sdf', 'f', '--format', 'rpy_degrees', '0', '0', '90')
-    assert done.returncode == 0
+def test_a_rotation_leaves_the_position(set_pose, path):
+    set_pose('f', '--format', 'rpy_degrees', '0', '0', '90')
     assert '<pose>1 2 3 0 0 1.570796327</pose>' in path.read_text()
-
-
-def test_a_pose_that_is_there_already_changes_nothing(run_main, path):
-    text = path.read_text()
-    done = run_main('set', 'good.sdf', 'f', *'123000')
-    assert (done.returncode, path.read_text()) == (0, text)
-    assert done.stdout == '"f" has this pose already; the file stays as it is\n'
 
 
 @pytest.mark.parametrize(('numbers', 'option', 'written'), [
     ('0 0 0 0 0 90', '--degrees', '0 0 0 0 0 1.570796327'),
     ('300 0 0 0 0 0', '--mm', '0.3 0 0 0 0 0')])
-def test_numbers_in_another_unit_are_asked_about(run_main, path, numbers, option, written):
-    text = path.read_text()
-    done = run_main('set', 'good.sdf', 'f', *numbers.split())
-    assert (done.returncode, done.stdout, path.read_text()) == (1, '', text)
-    assert done.stderr.endswith(f'did you mean {option}? --force writes them as they are\n')
-    assert run_main('set', 'good.sdf', 'f', option, *numbers.split()).returncode == 0
+def test_numbers_in_another_unit_are_asked_about(
+        set_pose, refused, path, numbers, option, written):
+    assert refused('f', *numbers.split()).endswith(
+        f'did you mean {option}? --force writes them as they are')
+    set_pose('f', option, *numbers.split())
     assert f'<pose>{written}</pose>' in path.read_text()
 
 
-def test_numbers_that_are_meant_are_written(run_main, path):
-    run_main('set', 'good.sdf', 'f', '--force', *'300 0 0 0 0 0'.split())
+def test_numbers_that_are_meant_are_written(set_pose, path):
+    set_pose('f', '--force', *'300 0 0 0 0 0'.split())
     assert '<pose>300 0 0 0 0 0</pose>' in path.read_text()
 
 
 @pytest.mark.parametrize('part', ['tip', 'm::tip', 'm/tip'])
-def test_a_model_moves_so_that_its_part_is_there(run_main, path, part):
+def test_a_model_moves_so_that_its_part_is_there(set_pose, path, part):
     text = path.read_text()
     path.write_text(text.replace(
         '<link name="l"/>', '<link name="l"/><frame name="tip"><pose>0 2 0 0 0 0</pose></frame>'))
-    done = run_main('set', 'good.sdf', 'm', '--by', part, '--relative-to', 'f', *'040000')
-    assert done.returncode == 0, done.stderr
+    set_pose('m', '--by', part, '--relative-to', 'f', *'040000')
     assert load(path).pose('m', 'f')[:3] == pytest.approx((0, 2, 0))
 
 
-def test_a_part_that_stays_is_an_error(run_main, path):
-    text = path.read_text()
-    done = run_main('set', 'good.sdf', 'm', '--by', 'f', *'000000')
-    assert (done.returncode, path.read_text()) == (1, text)
-    assert done.stderr == 'sdf_pose set: "f" does not move with "m"\n'
-
-
-def test_the_camera_moves_where_its_optical_frame_was_measured(run_main, path):
+def test_the_camera_moves_where_its_optical_frame_was_measured(set_pose, path):
     text = path.read_text()
     camera = '<link name="l"><sensor name="eye" type="camera"/></link>'
     path.write_text(text.replace('<link name="l"/>', camera))
-    done = run_main(
-        'set', 'good.sdf', 'm/l/eye_optical', '--relative-to', 'm/l', '--format', 'sdf_quat_xyzw',
-        '0', '0', '2', '-0.5', '0.5', '-0.5', '0.5')
-    assert done.returncode == 0, done.stderr
+    set_pose('m/l/eye_optical', '--relative-to', 'm/l', '--format', 'sdf_quat_xyzw', *'002',
+             '-0.5', '0.5', '-0.5', '0.5')
     assert path.read_text() == text.replace('<link name="l"/>', camera.replace(
         '"camera"/>', '"camera"><pose>0 0 2 0 0 0</pose></sensor>'))
 
@@ -115,13 +117,10 @@ def test_the_camera_moves_where_its_optical_frame_was_measured(run_main, path):
     (['g', *'000000'], 'no frame or element is called "g"'),
     (['f', '--relative-to', 'm', *'000000'], 'good.sdf:3: POSE_NOT_SET: '),
     (['f', '--relative-to', 'g', *'000000'], 'no frame or element is called "g"'),
+    (['m', '--by', 'f', *'000000'], 'sdf_pose set: "f" does not move with "m"'),
 ])
-def test_what_cannot_be_set_is_one_error(run_main, path, arguments, message):
-    text = path.read_text()
-    done = run_main('set', 'good.sdf', *arguments)
-    assert (done.returncode, done.stdout, path.read_text()) == (1, '', text)
-    assert message in done.stderr
-    assert len(done.stderr.splitlines()) == 1
+def test_what_cannot_be_set_is_one_error(refused, arguments, message):
+    assert message in refused(*arguments)
 
 
 def test_an_invalid_file_is_not_written(run_main, files):

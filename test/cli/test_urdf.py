@@ -13,14 +13,13 @@ CELL = world_file(''.join(
     f'<model name="{name}"><link name="l"/></model>' for name in ('table', 'robot')))
 
 
-@pytest.fixture
-def arm(files):
+@pytest.fixture(autouse=True)
+def write_files(files):
     """The folder has an arm and a cell with two models."""
     (files / 'arm.sdf').write_text(ARM)
     (files / 'cell.sdf').write_text(CELL)
 
 
-@pytest.mark.usefixtures('arm')
 @pytest.mark.parametrize(('arguments', 'reason'), [
     (['bad.sdf'], 'bad.sdf:3: ELEMENT_INVALID'),
     (['none.sdf'], 'FILE_READ'),
@@ -36,14 +35,12 @@ def test_wrong_input_gives_one_error(run_main, arguments, reason):
     assert result.stdout == ''
 
 
-@pytest.mark.usefixtures('arm')
 def test_separator_must_not_be_empty(run_main):
     result = run_main('urdf', 'arm.sdf', '--frame-separator', '')
     assert result.returncode == 2
     assert 'at least one character' in result.stderr
 
 
-@pytest.mark.usefixtures('arm')
 def test_urdf_is_printed_and_warnings_beside_it(run_main):
     result = run_main('urdf', 'arm.sdf')
     assert result.returncode == 0
@@ -52,14 +49,12 @@ def test_urdf_is_printed_and_warnings_beside_it(run_main):
     assert 'the visual "m::base::v" is left out: URDF has no plane' in result.stderr
 
 
-@pytest.mark.usefixtures('arm')
 def test_urdf_is_written_to_a_file(run_main, files):
     printed = run_main('urdf', 'arm.sdf').stdout
     assert run_main('urdf', 'arm.sdf', '-o', 'arm.urdf').stdout == ''
     assert (files / 'arm.urdf').read_text() == printed
 
 
-@pytest.mark.usefixtures('arm')
 def test_kinds_and_names(run_main):
     text = run_main('urdf', 'arm.sdf', '--kinds', 'frame', '--frame-names', 'scoped',
                     '--frame-separator', '_').stdout
@@ -67,6 +62,5 @@ def test_kinds_and_names(run_main):
     assert 'link name="m"' not in text
 
 
-@pytest.mark.usefixtures('arm')
 def test_model_of_a_world(run_main):
     assert '<robot name="table">' in run_main('urdf', 'cell.sdf', '--model', 'table').stdout

@@ -81,17 +81,15 @@ def test_a_relative_pose_leads_back_to_the_pose(a, b):
     assert_near(pose_product(a, relative_pose(a, b)), b)
 
 
-@given(st.lists(st.tuples(POSES, POSES), max_size=12))
-def test_many_products_are_the_same_as_one_by_one(pairs):
-    products = pose_products(rows([a for a, _ in pairs]), rows([b for _, b in pairs]))
-    np.testing.assert_array_equal(products, rows([pose_product(a, b) for a, b in pairs]))
+ONE_AND_MANY = pytest.mark.parametrize(('one', 'many'), [
+    (pose_product, pose_products), (relative_pose, relative_poses)])
 
 
-@given(st.lists(st.tuples(POSES, POSES), max_size=12))
-def test_many_relative_poses_are_the_same_as_one_by_one(pairs):
-    relative = relative_poses(rows([a for a, _ in pairs]), rows([b for _, b in pairs]))
-    np.testing.assert_array_equal(
-        relative, rows([relative_pose(a, b) for a, b in pairs]))
+@ONE_AND_MANY
+@given(pairs=st.lists(st.tuples(POSES, POSES), max_size=12))
+def test_many_are_the_same_as_one_by_one(one, many, pairs):
+    found = many(rows([a for a, _ in pairs]), rows([b for _, b in pairs]))
+    np.testing.assert_array_equal(found, rows([one(a, b) for a, b in pairs]))
 
 
 @given(POSES, st.lists(POSES, min_size=1, max_size=12))
@@ -118,23 +116,17 @@ def more_poses_than_a_block():
     return poses
 
 
-def test_products_in_several_blocks_are_the_same_as_one_by_one():
+@ONE_AND_MANY
+def test_several_blocks_are_the_same_as_one_by_one(one, many):
     first, second = more_poses_than_a_block()
-    expected = rows(map(pose_product, map(Pose._make, first), map(Pose._make, second)))
-    np.testing.assert_array_equal(pose_products(first, second), expected)
+    expected = rows(map(one, map(Pose._make, first), map(Pose._make, second)))
+    np.testing.assert_array_equal(many(first, second), expected)
 
 
 def test_the_product_of_one_pose_and_several_blocks():
     (first, *_), second = more_poses_than_a_block()
     expected = rows(pose_product(Pose(*first), Pose(*each)) for each in second)
     np.testing.assert_array_equal(pose_products(first[np.newaxis], second), expected)
-
-
-def test_relative_poses_in_several_blocks_are_the_same_as_one_by_one():
-    first, second = more_poses_than_a_block()
-    expected = rows(
-        relative_pose(Pose(*a), Pose(*b)) for a, b in zip(first, second, strict=True))
-    np.testing.assert_array_equal(relative_poses(first, second), expected)
 
 
 @pytest.mark.parametrize('count', [1, 5])

@@ -61,10 +61,26 @@ def wait_for_x(listener, x, frame='crate/body'):
     listener.wait(lambda: last_x(listener, frame) == x, lambda: f'x = {x}')
 
 
-def set_parameters(listener, node=BRIDGE, **values):
+def results_of_setting(listener, node=BRIDGE, **values):
     request = SetParameters.Request(parameters=[
         Parameter(name, value=value).to_parameter_msg() for name, value in values.items()])
-    return listener.call(SetParameters, f'{node}/set_parameters', request).results
+    results = listener.call(SetParameters, f'{node}/set_parameters', request).results
+    assert len(results) == len(values)
+    return results
+
+
+def set_parameters(listener, node=BRIDGE, **values):
+    """Set parameters, each of which is accepted."""
+    for result in results_of_setting(listener, node, **values):
+        assert result.successful, result.reason
+
+
+def reason_for_refusal(listener, **values):
+    """Set parameters, all of which are refused; return the reason."""
+    results = results_of_setting(listener, **values)
+    assert not any(result.successful for result in results), results
+    (reason,) = {result.reason for result in results}
+    return reason
 
 
 def reload(listener):

@@ -148,11 +148,10 @@ def test_diagnostics_go_on_while_a_file_is_read(slow, listener):
     assert answer_to(listener, setting).results[0].successful
 
 
-@pytest.mark.parametrize('type_', [
-    ParameterType.PARAMETER_BYTE_ARRAY, ParameterType.PARAMETER_STRING_ARRAY])
-def test_an_empty_list_of_whatever_type_is_taken_for_a_list_of_strings(listener, type_):
-    assert set_parameters(listener, resource_paths=['x'])[0].successful
-    parameter = ParameterMessage(name='resource_paths', value=ParameterValue(type=type_))
+def test_an_empty_list_of_another_type_is_taken_for_a_list_of_strings(listener):
+    set_parameters(listener, resource_paths=['x'])
+    parameter = ParameterMessage(name='resource_paths', value=ParameterValue(
+        type=ParameterType.PARAMETER_BYTE_ARRAY))
     (result,) = listener.call(
         SetParameters, f'{BRIDGE}/set_parameters', SetParameters.Request(parameters=[parameter])
     ).results

@@ -232,29 +232,20 @@ def test_a_large_value_is_not_repeated(start_bridge, start_listener, tmp_path):
     assert future.result().values == []
 
 
-@pytest.fixture(name='large_bridge')
-def bridge_on_long_names(bridge, file):
+def test_what_is_searched_among_many_long_names_keeps_nobody_waiting(
+        bridge, file, start_listener):
     frames = ''.join(f'<frame name="{LONG_NAME}{number}"/>' for number in range(40_000))
     replace(file, world(1, extra=frames))
     bridge.wait_for_line('publishing 40002 frames')
-    return bridge
-
-
-def test_a_name_that_was_probably_meant_is_searched_beside(large_bridge, start_listener):
     listener = start_listener()
-    waiting = Waiting(listener, large_bridge.pid)
+    waiting = Waiting(listener, bridge.pid)
     future = asked(
         listener, LookupPose, 'lookup_pose', LookupPose.Request(frame=f'{LONG_NAME}x'))
     waiting.check_until(future.done)
     assert '; did you mean ' in future.result().message
-
-
-def test_many_patterns_for_many_frames_are_answered(large_bridge, start_listener):
-    listener = start_listener()
     patterns = [f'*{number}{"a" * 200}b' for number in range(1000)]
-    waiting = Waiting(listener, large_bridge.pid)
     future = asked(listener, SetParameters, 'set_parameters', SetParameters.Request(parameters=[
         Parameter(name='pose_topics', value=value_of(string_array_value=patterns))]))
     waiting.check_until(future.done)
     assert future.result().results[0].successful
-    large_bridge.wait_for_line('takes too long')
+    bridge.wait_for_line('takes too long')

@@ -28,7 +28,6 @@ TESTED_ELSEWHERE = {
     'sdf_pose tree cell.sdf': 'test_readme.py compares the output',
     'sdf_pose check broken.sdf': 'test_readme.py compares the output',
     'sdf_pose check --strict cell.sdf': 'test_readme.py compares the output',
-    'sdf_pose convert': 'test_formats_of_the_documentation, below',
     'make ': 'it is what runs the tests, or takes minutes',
 }
 """Beginnings of commands."""
@@ -111,13 +110,6 @@ def test_commands(command, folder, capsys):
         assert (folder / arguments[arguments.index('-o') + 1]).stat().st_size
     else:
         assert capsys.readouterr().out
-
-
-@pytest.mark.parametrize('command', [
-    each for each in commands() if each.startswith('sdf_pose convert ')])
-def test_formats_of_the_documentation(command, capsys):
-    assert main(shlex.split(command)[1:]) == 0
-    assert capsys.readouterr().out
 
 
 def shown_after(page, command):

@@ -8,7 +8,7 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from changes import BRIDGE, pose_of, reload, replace, set_parameters
+from changes import BRIDGE, pose_of, reason_for_refusal, reload, replace, set_parameters
 
 ROBOT = """<sdf version="1.11"><model name="robot">
 <link name="base"/><link name="arm"><pose>1 0 0 0 0 0</pose></link>
@@ -101,12 +101,7 @@ def test_topics_of_gazebo_can_be_followed_and_changed(joints, tf):
     wait_for_topics(tf, '/world/shop/model/r2/joint_state')
     move(joints, tf, '/world/shop/model/r2/joint_state', 'r2', 0.5, 0.25)
     check_poses(tf, r2=(20, 0.5, 0.25))
-    result, = set_parameters(tf.listener, joint_states_topics=['{robot}/j'])
-    assert not result.successful
-    assert result.reason.startswith(
-        'parameter joint_states_topics is "{robot}/j"; it must be the name of a topic with no')
-    result, = set_parameters(tf.listener, joint_states_topics=['{model}/j', 'j'])
-    assert result.successful, result.reason
+    set_parameters(tf.listener, joint_states_topics=['{model}/j', 'j'])
     wait_for_topics(tf, '/j', '/r2/j')
     move(joints, tf, 'r2/j', 'r2', 0.75, 0.25)
 
@@ -145,11 +140,9 @@ def test_topics_that_become_one_are_reported_and_lose_nothing(start_bridge, file
 def test_too_many_topics_are_rejected_in_a_setting_and_in_a_file(file, tf):
     set_parameters(tf.listener, use_joint_states=True, watch=False)
     patterns = [f'{{model}}/j{number}' for number in range(400)]
-    result, = set_parameters(tf.listener, joint_states_topics=patterns)
-    assert not result.successful
-    assert result.reason.startswith('joint_states_topics names 1200 topics with 3 models')
-    result, = set_parameters(tf.listener, joint_states_topics=patterns[:300])
-    assert result.successful, result.reason
+    assert reason_for_refusal(tf.listener, joint_states_topics=patterns).startswith(
+        'joint_states_topics names 1200 topics with 3 models')
+    set_parameters(tf.listener, joint_states_topics=patterns[:300])
     replace(file, fleet(r1=10, r2=20, r3=30, r4=40))
     answer = reload(tf.listener)
     assert not answer.success

@@ -95,17 +95,16 @@ def test_arguments_reach_the_node(launch, listener, sdf_file, name):
     listener.wait_for_keys(listener.transforms, parents)
 
 
-@pytest.mark.parametrize('name', ['bridge.launch.py', 'bridge.launch.xml'])
 @pytest.mark.parametrize('node', ['/**', 'sdf_pose_bridge', '/left/sdf_pose_bridge'])
 def test_arguments_win_over_the_params_file_and_leave_it_the_rest(
-        launch, listener, sdf_file, tmp_path, name, node):
+        launch, listener, sdf_file, tmp_path, node):
     params_file = tmp_path / 'params.yaml'
     params_file.write_text(
         f'{node}:\n  ros__parameters:\n    sdf_file: {sdf_file}\n    root_frame: map\n'
         '    frame_prefix: from_file_\n    anchor_models: all\n', encoding='utf-8')
     listener.listen_to_frames()
     namespace = '' if node == 'sdf_pose_bridge' else 'left'
-    launch(name, params_file=params_file, namespace=namespace, frame_prefix='a/')
+    launch('bridge.launch.py', params_file=params_file, namespace=namespace, frame_prefix='a/')
     assert wait_for_parents(listener, ['a/base'])['a/base'] == 'map'
 
 

@@ -47,9 +47,19 @@ def test_unknown_name_is_refused(scene, name):
     assert caught.value.code == 'POSE_RELATIVE_TO_INVALID'
 
 
-def test_unknown_reference_is_refused_with_a_hint(scene):
-    with pytest.raises(UnknownFrameError, match=r'"tabel".*did you mean "table"'):
+def test_unknown_reference_is_refused_with_the_file_and_a_hint(scene):
+    with pytest.raises(UnknownFrameError, match=r'^<text>: .*"tabel".*did you mean "table"'):
         scene.pose('chair', 'tabel')
+
+
+@pytest.mark.parametrize(('name', 'options', 'message'), [
+    ('table', {}, r'"table".*more than one.*day.*night'),
+    ('noon', {'world': 'night'}, '"noon" names nothing in world "night"'),
+    ('noon', {'world': 'dusk'}, '"noon" names nothing in world "dusk"'),
+])
+def test_name_of_no_world_or_of_several_is_refused(worlds, name, options, message):
+    with pytest.raises(UnknownFrameError, match=message):
+        worlds.pose(name, **options)
 
 
 def test_model_may_be_left_out_in_a_model_file():
@@ -64,26 +74,6 @@ def test_unknown_name_is_a_lookup_error_and_an_error_of_the_package(scene):
         scene.pose('tabel')
     with pytest.raises(SdfError):
         scene.pose('tabel')
-
-
-def test_error_has_the_file(scene):
-    with pytest.raises(UnknownFrameError, match=r'^<text>: '):
-        scene.pose('tabel')
-
-
-def test_name_of_two_worlds_is_refused(worlds):
-    with pytest.raises(UnknownFrameError, match=r'"table".*more than one.*day.*night'):
-        worlds.pose('table')
-
-
-def test_name_of_another_world_is_refused(worlds):
-    with pytest.raises(UnknownFrameError, match='"noon" names nothing in world "night"'):
-        worlds.pose('noon', world='night')
-
-
-def test_unknown_world_is_refused(worlds):
-    with pytest.raises(UnknownFrameError, match='"noon" names nothing in world "dusk"'):
-        worlds.pose('noon', world='dusk')
 
 
 def test_pose_relative_to_another_world_is_refused():

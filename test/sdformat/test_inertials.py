@@ -122,34 +122,27 @@ def test_added_mass_is_no_mass():
 
 # Automatic ones that cannot be computed
 
-@pytest.mark.parametrize('shape', [
-    '<plane/>', '<empty/>', '', '<heightmap><uri>a</uri></heightmap>',
-    '<box><size>1 0 1</size></box>', '<sphere><radius>-1</radius></sphere>',
-    '<cylinder><radius>1</radius><length>-1</length></cylinder>',
-    '<capsule><radius>0</radius><length>1</length></capsule>',
-])
-def test_collision_without_a_volume_is_refused(shape):
-    assert codes_of(link_with(AUTO + collision('c', 1, shape))) == ['LINK_INERTIA_INVALID']
+REFUSED = {
+    'LINK_INERTIA_INVALID': [collision('c', 1, *each) for each in (
+        # Shapes without a volume.
+        ('<plane/>',), ('<empty/>',), ('',), ('<heightmap><uri>a</uri></heightmap>',),
+        ('<box><size>1 0 1</size></box>',), ('<sphere><radius>-1</radius></sphere>',),
+        ('<cylinder><radius>1</radius><length>-1</length></cylinder>',),
+        ('<capsule><radius>0</radius><length>1</length></capsule>',),
+        # Densities.
+        (UNIT_BOX, '0'), ('<sphere/>', '0'), ('<cylinder/>', '0'), ('<cone/>', '0'),
+        ('<ellipsoid/>', '-1'), ('<capsule/>', '-1'),
+    )],
+    'POSE_RELATIVE_TO_INVALID': [
+        collision('c', 1, UNIT_BOX).replace('<pose>', '<pose relative_to="none">')],
+    'ELEMENT_MISSING': [''],
+}
 
 
-@pytest.mark.parametrize(('shape', 'density'), [
-    (UNIT_BOX, '0'), ('<sphere/>', '0'), ('<cylinder/>', '0'), ('<cone/>', '0'),
-    ('<ellipsoid/>', '-1'), ('<capsule/>', '-1'),
-])
-def test_collision_without_a_valid_density_is_refused(shape, density):
-    text = link_with(AUTO + collision('c', 1, shape, density))
-    assert codes_of(text) == ['LINK_INERTIA_INVALID']
-
-
-def test_collision_that_is_relative_to_no_frame_is_refused():
-    text = link_with(
-        f'{AUTO}<collision name="c"><pose relative_to="none"/><geometry>{UNIT_BOX}</geometry>'
-        '</collision>')
-    assert codes_of(text) == ['POSE_RELATIVE_TO_INVALID']
-
-
-def test_link_without_collisions_is_refused():
-    assert codes_of(link_with(AUTO)) == ['ELEMENT_MISSING']
+@pytest.mark.parametrize(('code', 'content'), [
+    (code, content) for code, contents in REFUSED.items() for content in contents])
+def test_automatic_inertial_that_cannot_be_computed_is_refused(code, content):
+    assert codes_of(link_with(AUTO + content)) == [code]
 
 
 def test_automatic_inertial_in_an_actor_needs_no_collisions():
@@ -157,19 +150,15 @@ def test_automatic_inertial_in_an_actor_needs_no_collisions():
     load_text(f'<sdf version="1.9">{actor}</sdf>')
 
 
-def test_mesh_leaves_the_pose_as_written_with_a_warning():
+@pytest.mark.parametrize(('shape', 'x', 'words'), [
+    (UNIT_BOX, 1.0, 'pose of an automatic inertial is ignored'),
+    ('<mesh><uri>a</uri></mesh>', 3.0, 'automatic inertial of link "l" has its pose as written'),
+])
+def test_written_pose_is_ignored_unless_there_is_a_mesh(shape, x, words):
     scene = load_text(link_with(
-        '<inertial auto="true"><pose>3 0 0 0 0 0</pose></inertial>'
-        + collision('c', 1, '<mesh><uri>a</uri></mesh>')))
-    assert scene.pose('m::l::inertial').x == 3.0
-    assert 'automatic inertial of link "l" has its pose as written' in scene.warnings[-1].message
-
-
-def test_written_pose_is_ignored_with_a_warning():
-    scene = load_text(link_with(
-        '<inertial auto="true"><pose>3 0 0 0 0 0</pose></inertial>' + collision('c', 1, UNIT_BOX)))
-    assert scene.pose('m::l::inertial').x == 1.0
-    assert 'pose of an automatic inertial is ignored' in scene.warnings[0].message
+        '<inertial auto="true"><pose>3 0 0 0 0 0</pose></inertial>' + collision('c', 1, shape)))
+    assert scene.pose('m::l::inertial').x == x
+    assert words in scene.warnings[-1].message
 
 
 # Centers of mass

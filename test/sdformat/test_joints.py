@@ -15,11 +15,6 @@ def joint_of_type(joint_type):
     return model_file(TWO_LINKS + joint(content, joint_type=joint_type))
 
 
-def test_joint_without_a_type_is_refused():
-    text = model_file(TWO_LINKS + '<joint name="j"><parent>a</parent><child>b</child></joint>')
-    assert codes_of(text) == ['ATTRIBUTE_MISSING']
-
-
 @pytest.mark.parametrize('joint_type', ['', ' ', 'glue', 'hinge', 'fix ed'])
 def test_joint_of_an_unknown_type_is_refused(joint_type):
     assert codes_of(joint_of_type(joint_type)) == ['ATTRIBUTE_INVALID']

@@ -71,13 +71,6 @@ def test_lines_of_bytes_in_any_encoding(encoding):
     assert scene.lines[scene.index(f'm::{name}')] == 70_001
 
 
-@pytest.mark.parametrize('encoding', ['utf-8', 'ISO-8859-1', 'UTF-16'])
-def test_lines_of_decoded_text(encoding):
-    text = f'<?xml version="1.0" encoding="{encoding}"?>' + model_file('\n' * 70_000 + LINK)
-    scene = load_text(text)
-    assert scene.lines[scene.index('m::l')] == 70_001
-
-
 @pytest.mark.parametrize('line', [65_534, 65_535, 65_536, 100_000])
 def test_line_of_an_error(line):
     text = model_file('\n' * (line - 2) + '<link name="l">\n<pose>1 2</pose>\n</link>')
@@ -120,20 +113,14 @@ def folder(tmp_path):
     return tmp_path
 
 
-@pytest.mark.parametrize(('name', 'file', 'line'), [
-    ('a::l', 'long', 70_001), ('a::f', 'long', 140_001), ('b::l', 'long', 70_001),
-    ('b::f', 'long', 140_001), ('g', 'twice', 80_003),
+@pytest.mark.parametrize(('main', 'name', 'file', 'line'), [
+    ('twice', 'a::l', 'long', 70_001), ('twice', 'a::f', 'long', 140_001),
+    ('twice', 'b::l', 'long', 70_001), ('twice', 'b::f', 'long', 140_001),
+    ('twice', 'g', 'twice', 80_003), ('merging', 'm::l', 'long', 70_001),
+    ('merging', 'm::f', 'long', 140_001), ('merging', 'm::k', 'merging', 90_002),
 ])
-def test_lines_of_a_long_file_that_is_included_twice(folder, name, file, line):
-    scene = load(folder / 'twice.sdf')
-    assert place_of(scene, name) == (str(folder / f'{file}.sdf'), line)
-
-
-@pytest.mark.parametrize(('name', 'file', 'line'), [
-    ('m::l', 'long', 70_001), ('m::f', 'long', 140_001), ('m::k', 'merging', 90_002),
-])
-def test_lines_of_a_long_file_that_is_merged(folder, name, file, line):
-    scene = load(folder / 'merging.sdf')
+def test_lines_of_a_long_file_that_is_included_twice_or_merged(folder, main, name, file, line):
+    scene = load(folder / f'{main}.sdf')
     assert place_of(scene, name) == (str(folder / f'{file}.sdf'), line)
 
 

@@ -43,12 +43,6 @@ def messages_of(text):
     (link_with('<visual name="v"><origin xyz="1 2 3"/><geometry/></visual>'),
      ('<origin> in <visual> is not defined in SDFormat; it is from URDF; SDFormat has <pose>x y z '
      'roll pitch yaw</pose>')),
-])
-def test_element_that_is_not_defined_is_a_warning(text, message):
-    assert messages_of(text) == [message]
-
-
-@pytest.mark.parametrize(('text', 'message'), [
     (link_with('<pose relativ_to="x">1 2 3 0 0 0</pose>'),
      'relativ_to="x" of <pose> is not defined in SDFormat; did you mean relative_to?'),
     (link_with('<pose degree="true">0 0 0 0 0 1</pose>'),
@@ -64,7 +58,7 @@ def test_element_that_is_not_defined_is_a_warning(text, message):
     (model_file(LINK + '<plugin name="p" filename="f" file="g"/>'),
      'file="g" of <plugin> is not defined in SDFormat; did you mean filename?'),
 ])
-def test_attribute_that_is_not_defined_is_a_warning(text, message):
+def test_what_is_not_defined_is_a_warning(text, message):
     assert messages_of(text) == [message]
 
 

@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Versions: which exist, and how files of old ones are converted to the newest grammar."""
 
+import itertools
+
 import pytest
-from sdf_texts import codes_of, LINK, model_file, names_of, TWO_LINKS
+from sdf_texts import codes_of, fixed_joint, LINK, model_file, names_of, TWO_LINKS
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.sdformat.documents import document_from_file
@@ -101,24 +103,20 @@ def frame_of_axis(text):
     return converted(text).find('.//xyz').get('expressed_in')
 
 
-@pytest.mark.parametrize('flag', ['true', '1', 'TRUE', ' true '])
-@pytest.mark.parametrize('version', ['1.4', '1.5', '1.6'])
-def test_old_axis_can_be_expressed_in_the_model(flag, version):
-    axis = f'<xyz>1 0 0</xyz><use_parent_model_frame>{flag}</use_parent_model_frame>'
-    assert frame_of_axis(file_with_axis(axis, version)) == '__model__'
-
-
-@pytest.mark.parametrize('flag', ['false', '0', '', 'maybe'])
-@pytest.mark.parametrize('version', ['1.4', '1.6'])
-def test_old_axis_can_be_expressed_in_the_joint(flag, version):
-    axis = f'<xyz>1 0 0</xyz><use_parent_model_frame>{flag}</use_parent_model_frame>'
-    assert frame_of_axis(file_with_axis(axis, version)) is None
-
-
-@pytest.mark.parametrize(('version', 'frame'), [
-    ('1.3', '__model__'), ('1.4', '__model__'), ('1.5', None), ('1.6', None)])
-def test_default_frame_of_an_old_axis(version, frame):
-    assert frame_of_axis(file_with_axis('<xyz>1 0 0</xyz>', version)) == frame
+@pytest.mark.parametrize(('versions', 'flags', 'frame'), [
+    ('1.4 1.5 1.6', ['true', '1', 'TRUE', ' true '], '__model__'),
+    ('1.4 1.6', ['false', '0', '', 'maybe'], None),
+    ('1.7', ['true'], None),
+    ('1.3 1.4', [None], '__model__'),
+    ('1.5 1.6', [None], None),
+])
+def test_frame_of_an_old_axis(versions, flags, frame):
+    for version, flag in itertools.product(versions.split(), flags):
+        written = '' if flag is None else (
+            f'<use_parent_model_frame>{flag}</use_parent_model_frame>')
+        text = file_with_axis(f'<xyz>1 0 0</xyz>{written}', version)
+        assert frame_of_axis(text) == frame, (version, flag)
+        assert 'm::j' in load_text(text).names
 
 
 def test_default_frame_of_an_axis_in_an_old_nested_model_is_the_joint():
@@ -139,16 +137,6 @@ def test_axis_in_the_old_joint_frame_has_a_default_direction(axis, version):
     assert 'm::j' in load_text(file_with_axis(axis, version)).names
 
 
-def test_old_flag_means_nothing_in_newer_files():
-    axis = '<xyz>1 0 0</xyz><use_parent_model_frame>true</use_parent_model_frame>'
-    assert frame_of_axis(file_with_axis(axis, '1.7')) is None
-
-
-def test_old_axes_are_read():
-    axis = '<xyz>1 0 0</xyz><use_parent_model_frame>true</use_parent_model_frame>'
-    assert 'm::j' in load_text(file_with_axis(axis, '1.6')).names
-
-
 # 1.7 to 1.8: names such as nested::link become nested models
 
 NESTED = """
@@ -163,23 +151,15 @@ def world(content, version='1.7'):
             '</sdf>')
 
 
-@pytest.mark.parametrize('joint', [
-    '<parent>base</parent><child>n::a</child>', '<parent>n::a</parent><child>base</child>',
+@pytest.mark.parametrize(('content', 'code'), [
+    (NESTED + fixed_joint('n::j', 'base', 'n::a'), 'CONVERSION_ERROR'),
+    (NESTED + fixed_joint('n::j', 'n::a', 'base'), 'CONVERSION_ERROR'),
+    ('<link name="n::l"><visual name="v"><pose relative_to="base"/><geometry/></visual></link>',
+     'CONVERSION_ERROR'),
+    ('<link name="n::l"><pose relative_to="base"/></link>', 'POSE_RELATIVE_TO_INVALID'),
 ])
-def test_joint_from_a_nested_model_to_outside_cannot_be_converted(joint):
-    text = world(f'<link name="base"/>{NESTED}<joint name="n::j" type="fixed">{joint}</joint>')
-    assert codes_of(text) == ['CONVERSION_ERROR']
-
-
-def test_reference_from_inside_a_nested_link_to_outside_cannot_be_converted():
-    text = world('<link name="base"/><link name="n::l"><visual name="v"><pose relative_to="base"/>'
-                 '<geometry/></visual></link>')
-    assert codes_of(text) == ['CONVERSION_ERROR']
-
-
-def test_pose_of_a_nested_link_relative_to_a_frame_outside_is_an_error():
-    text = world('<link name="base"/><link name="n::l"><pose relative_to="base"/></link>')
-    assert codes_of(text) == ['POSE_RELATIVE_TO_INVALID']
+def test_reference_from_a_nested_model_to_outside_cannot_be_converted(content, code):
+    assert codes_of(world(f'<link name="base"/>{content}')) == [code]
 
 
 def test_pose_of_a_nested_link_can_be_relative_to_a_name_in_the_new_model():
@@ -187,13 +167,6 @@ def test_pose_of_a_nested_link_can_be_relative_to_a_name_in_the_new_model():
         '<link name="n::l"><pose relative_to="k">1 0 0 0 0 0</pose></link>'
         '<link name="n::k"><pose>0 5 0 0 0 0</pose></link>'))
     assert scene.pose('m::n::l')[:3] == (1.0, 5.0, 0.0)
-
-
-def test_references_in_a_nested_model_that_is_moved_stay():
-    scene = load_text(world(
-        '<link name="base"/><model name="n::k"><frame name="f"><pose>0 3 0 0 0 0</pose></frame>'
-        '<link name="l"><pose relative_to="f">1 0 0 0 0 0</pose></link></model>'))
-    assert scene.pose('m::n::k::l')[:3] == (1.0, 3.0, 0.0)
 
 
 def test_names_with_the_separator_are_refused_in_newer_files():
@@ -210,14 +183,18 @@ def test_canonical_link_of_a_nested_model_is_that_of_its_model_frame():
     assert scene.canonical_links[scene.index('m::n')] == scene.index('m::n::b')
 
 
-def test_name_with_the_same_beginning_stays():
-    scene = load_text(world('<link name="b::l"/><link name="base"/>'))
-    assert scene.names == ('world', 'm', 'm::base', 'm::b', 'm::b::l')
-
-
-def test_models_are_nested_as_deep_as_their_names():
-    scene = load_text(world('<link name="base"/><link name="a::b::c"/>'))
-    assert scene.names[3:] == ('m::a', 'm::a::b', 'm::a::b::c')
+@pytest.mark.parametrize(('content', 'name', 'position'), [
+    ('<link name="b::l"/>', 'm::b::l', (0, 0, 0)),
+    ('<link name="a::b::c"/>', 'm::a::b::c', (0, 0, 0)),
+    (('<model name="n::k"><frame name="f"><pose>0 3 0 0 0 0</pose></frame>'
+      '<link name="l"><pose relative_to="f">1 0 0 0 0 0</pose></link></model>'),
+     'm::n::k::l', (1, 3, 0)),
+])
+def test_models_are_nested_as_deep_as_their_names(content, name, position):
+    scene = load_text(world(f'<link name="base"/>{content}'))
+    assert scene.pose(name)[:3] == position
+    parts = name.split('::')
+    assert {'m::base', *('::'.join(parts[:end]) for end in range(1, len(parts)))} < {*scene.names}
 
 
 NESTED_ALREADY = '<model name="k"><link name="l"/><link name="p::a"/></model>'

@@ -55,39 +55,26 @@ def test_the_prefix_is_put_in_front_as_it_is(prefix):
         f'{prefix}m', f'{prefix}m/l', f'{prefix}m/n', f'{prefix}m/n/k']
 
 
-def test_a_sensor_is_named_as_gazebo_names_it():
-    text = in_world(f'<link name="l">{element("sensor", "s")}</link>')
-    assert ids_of(text)[-1] == 'm/l/s'
-
-
-def test_a_sensor_of_a_joint():
-    text = in_world(TWO_LINKS + fixed_joint('j', 'a', 'b', element('sensor', 's')))
-    assert ids_of(text)[-1] == 'm/j/s'
-
-
 @pytest.mark.parametrize('tag', CHILDREN)
 def test_kinds_that_share_names_have_the_kind_in_the_id(tag):
-    text = in_world(f'<link name="l">{element(tag, "x")}</link>')
-    assert ids_of(text)[-1] == f'm/l/{tag}/x'
+    link = f'<link name="l">{element(tag, "x")}</link>'
+    assert ids_of(in_world(link))[-1] == f'm/l/{tag}/x'
+    assert ids_of(model_file(link))[-1] == f'l/{tag}/x'
+    assert ids_of(in_world(link), FrameNames.AUTO, '.')[-1] == f'm.l.{tag}.x'
 
 
-def test_the_kind_in_a_relative_id():
-    text = model_file('<link name="l"><visual name="x"/></link>')
-    assert ids_of(text)[-1] == 'l/visual/x'
-
-
-def test_an_inertial():
-    assert ids_of(in_world('<link name="l"><inertial/></link>'))[-1] == 'm/l/inertial'
+@pytest.mark.parametrize(('content', 'frame_id'), [
+    (f'<link name="l">{element("sensor", "s")}</link>', 'm/l/s'),
+    (TWO_LINKS + fixed_joint('j', 'a', 'b', element('sensor', 's')), 'm/j/s'),
+    ('<link name="l"><inertial/></link>', 'm/l/inertial'),
+])
+def test_kinds_that_share_no_names(content, frame_id):
+    assert ids_of(in_world(content))[-1] == frame_id
 
 
 def test_a_light_and_an_actor_of_a_world():
     text = world_file(element('light', 'sun') + element('actor', 'man'))
     assert ids_of(text) == ['light/sun', 'actor/man']
-
-
-def test_the_separator_stands_before_and_after_the_kind():
-    text = in_world('<link name="l"><visual name="x"/></link>')
-    assert ids_of(text, FrameNames.AUTO, '.')[-1] == 'm.l.visual.x'
 
 
 @pytest.mark.parametrize(('name', 'frame_id'), [
@@ -96,14 +83,7 @@ def test_the_separator_stands_before_and_after_the_kind():
 ])
 def test_an_id_of_a_name(name, frame_id):
     assert FrameNaming().frame_id_from_name(name) == frame_id
-
-
-def test_what_leaves_nothing_has_no_id_with_a_prefix_either():
-    assert FrameNaming(prefix='r/').frame_id_from_name('/') == ''
-
-
-def test_a_leading_slash_goes_before_a_prefix_comes():
-    assert FrameNaming(prefix='r/').frame_id_from_name('/a') == 'r/a'
+    assert FrameNaming(prefix='r/').frame_id_from_name(name) == (frame_id and f'r/{frame_id}')
 
 
 def lidar(name, frame_id='', pose='1 0 0 0 0 0'):

@@ -102,104 +102,65 @@ def test_the_parent_of_a_model_is_its_canonical_link(canonical, link):
     assert parents_of(text)['m::n'] == 'm::n::k'
 
 
-def test_the_parent_of_a_model_of_models_is_the_first_link_below():
-    text = model_file(model('n', '<link name="k"/>'))
-    assert parents_of(text)['m'] == 'm::n::k'
-    assert parents_of(text)['m::n::k'] == '__root__'
+TWO_IN_NESTED = model('n', '<link name="k"/><link name="k2"/>')
+STATIC_LINK = model('s', '<static>1</static><link name="l"/>')
+PARENTS = {
+    'a model of models: the first link below': (
+        model_file(model('n', '<link name="k"/>')),
+        {'m': 'm::n::k', 'm::n::k': '__root__'}),
+    'a link: on the other side of a joint': (
+        model_file(LINKS + joints(('a', 'b'), ('b', 'c'))),
+        {'m::c': 'm::b', 'm::b': 'm::a', 'm::a': '__root__'}),
+    'a link without a joint: the canonical link': (
+        model_file(LINKS, attributes='canonical_link="b"'),
+        {'m::a': 'm::b', 'm::b': '__root__', 'm::c': 'm::b'}),
+    'the first of joined links: the canonical link': (
+        model_file(LINKS + '<link name="d"/>' + joints(('c', 'b'), ('b', 'd'))),
+        {'m::c': 'm::a', 'm::b': 'm::c', 'm::d': 'm::b'}),
+    'a nested model without a joint: the canonical link around it': (
+        model_file(LINKS + model(
+            'n', '<link name="k"/><link name="k2"/>' + model('o', '<link name="p"/>'))),
+        {'m::n::k': 'm::a', 'm::n::k2': 'm::n::k', 'm::n::o::p': 'm::n::k'}),
+    'a nested model: what a joint connects it to': (
+        model_file(LINKS + TWO_IN_NESTED + joints(('b', 'n::k2'))),
+        {'m::n::k2': 'm::b', 'm::n': 'm::n::k', 'm::n::k': 'm::a'}),
+    'lights and actors of a world: the world': (
+        world_file(model('m', LINKS) + posed('light', 'sun', '', 'm') + element('actor', 'man')),
+        {'sun': 'world', 'man': 'world'}),
+    'a static model without links': (
+        world_file(model('m', '<static>1</static><frame name="f"/>')
+                   + '<frame name="g" attached_to="m"/>'),
+        {'m': 'world', 'm::f': 'm', 'g': 'm'}),
+    'a static model with links': (
+        world_file(model('m', '<static>1</static>' + LINKS + '<frame name="f"/>')),
+        {'m': 'm::a', 'm::a': 'world', 'm::b': 'm::a', 'm::f': 'm'}),
+    'a joint to a static model': (
+        world_file(STATIC_LINK + model('m', LINKS) + joints(('s', 'm::b'))),
+        {'m::b': 's::l', 'm::a': 'world', 's::l': 'world'}),
+    'a static model that is the child of a joint: its parent in TF': (
+        world_file(model('m', LINKS) + STATIC_LINK + joints(('m::a', 's'))),
+        {'m::a': 's::l', 's::l': 'world'}),
+    'a link that is joined to the world: the world': (
+        world_file(model('m', LINKS + joints(('a', 'b'), ('world', 'b'), ('b', 'c')))),
+        {'m::b': 'world', 'm::a': 'm::b', 'm::c': 'm::b', 'm': 'm::a'}),
+    'a model file joined to the world': (
+        model_file(LINKS + joints(('a', 'b'), ('world', 'b'))),
+        {'m::b': '__root__', 'm::a': 'm::b'}),
+    'a joint to a frame of the world': (
+        world_file(model('m', LINKS) + '<frame name="f"/>' + joints(('f', 'm::b'))),
+        {'m::b': 'world'}),
+    'a chain of models: begins at the one that is joined to the world': (
+        world_file(''.join(model(name, f'<link name="{name}"/>') for name in 'pqr')
+                   + joints(('p', 'q'), ('q', 'r'), ('world', 'r'))),
+        {'r::r': 'world', 'q::q': 'r::r', 'p::p': 'q::q'}),
+}
+"""Files with the parents of some of their elements."""
 
 
-def test_the_parent_of_a_link_is_on_the_other_side_of_a_joint():
-    parents = parents_of(model_file(LINKS + joints(('a', 'b'), ('b', 'c'))))
-    assert (parents['m::c'], parents['m::b'], parents['m::a']) == ('m::b', 'm::a', '__root__')
-
-
-def test_the_parent_of_a_link_without_a_joint_is_the_canonical_link():
-    parents = parents_of(model_file(LINKS, attributes='canonical_link="b"'))
-    assert (parents['m::a'], parents['m::b'], parents['m::c']) == ('m::b', '__root__', 'm::b')
-
-
-def test_the_canonical_link_is_the_parent_of_the_first_of_joined_links():
-    parents = parents_of(model_file(LINKS + '<link name="d"/>' + joints(('c', 'b'), ('b', 'd'))))
-    assert (parents['m::c'], parents['m::b'], parents['m::d']) == ('m::a', 'm::c', 'm::b')
-
-
-def test_the_parent_of_a_nested_model_without_a_joint_is_the_canonical_link_around_it():
-    parents = parents_of(model_file(
-        LINKS + model('n', '<link name="k"/><link name="k2"/>' + model('o', '<link name="p"/>'))))
-    assert parents['m::n::k'] == 'm::a'
-    assert parents['m::n::k2'] == 'm::n::k'
-    assert parents['m::n::o::p'] == 'm::n::k'
-
-
-def test_the_parent_of_a_nested_model_is_what_a_joint_connects_it_to():
-    parents = parents_of(model_file(
-        LINKS + model('n', '<link name="k"/><link name="k2"/>') + joints(('b', 'n::k2'))))
-    assert parents['m::n::k2'] == 'm::b'
-    assert parents['m::n'] == 'm::n::k'
-    assert parents['m::n::k'] != 'm::n::k'
-
-
-def test_the_parent_of_lights_and_actors_of_a_world_is_the_world():
-    parents = parents_of(world_file(
-        model('m', LINKS) + posed('light', 'sun', '', 'm') + element('actor', 'man')))
-    assert (parents['sun'], parents['man']) == ('world', 'world')
-
-
-# Static models
-
-def test_a_static_model_without_links():
-    parents = parents_of(world_file(
-        model('m', '<static>1</static><frame name="f"/>')
-        + '<frame name="g" attached_to="m"/>'))
-    assert (parents['m'], parents['m::f'], parents['g']) == ('world', 'm', 'm')
-
-
-def test_a_static_model_with_links():
-    parents = parents_of(world_file(
-        model('m', '<static>1</static>' + LINKS + '<frame name="f"/>')))
-    assert parents['m'] == 'm::a'
-    assert (parents['m::a'], parents['m::b'], parents['m::f']) == ('world', 'm::a', 'm')
-
-
-def test_a_joint_to_a_static_model():
-    parents = parents_of(world_file(
-        model('s', '<static>1</static><link name="l"/>') + model('m', LINKS)
-        + joints(('s', 'm::b'))))
-    assert (parents['m::b'], parents['m::a'], parents['s::l']) == ('s::l', 'world', 'world')
-
-
-def test_the_static_side_of_a_joint_is_the_parent_in_either_order():
-    parents = parents_of(world_file(
-        model('m', LINKS) + model('s', '<static>1</static><link name="l"/>')
-        + joints(('m::a', 's'))))
-    assert (parents['m::a'], parents['s::l']) == ('s::l', 'world')
-
-
-# The world and other models
-
-def test_the_parent_of_a_link_that_is_joined_to_the_world_is_the_world():
-    parents = parents_of(world_file(
-        model('m', LINKS + joints(('a', 'b'), ('world', 'b'), ('b', 'c')))))
-    assert (parents['m::b'], parents['m::a'], parents['m::c']) == ('world', 'm::b', 'm::b')
-    assert parents['m'] == 'm::a'
-
-
-def test_a_model_file_joined_to_the_world():
-    parents = parents_of(model_file(LINKS + joints(('a', 'b'), ('world', 'b'))))
-    assert (parents['m::b'], parents['m::a']) == ('__root__', 'm::b')
-
-
-def test_a_joint_to_a_frame_of_the_world():
-    parents = parents_of(world_file(
-        model('m', LINKS) + '<frame name="f"/>' + joints(('f', 'm::b'))))
-    assert parents['m::b'] == 'world'
-
-
-def test_a_chain_of_models_starts_at_the_one_that_is_joined_to_the_world():
-    parents = parents_of(world_file(
-        ''.join(model(name, f'<link name="{name}"/>') for name in 'pqr')
-        + joints(('p', 'q'), ('q', 'r'), ('world', 'r'))))
-    assert (parents['r::r'], parents['q::q'], parents['p::p']) == ('world', 'r::r', 'q::q')
+@pytest.mark.parametrize(('text', 'expected'), PARENTS.values(), ids=PARENTS)
+def test_parents(text, expected):
+    parents = parents_of(text)
+    assert {name: parents[name] for name in expected} == expected
 
 
 def test_the_bodies_that_a_joint_connects_to_their_parents():

@@ -126,11 +126,6 @@ def test_an_id_is_that_of_the_root(text, root):
     assert f'the frame id "{root}", which is that of the root frame' in error.message
 
 
-def test_a_prefix_tells_a_frame_from_the_root():
-    assert parents_of(world_file(model('map', LINK)), root_frame='map', frame_prefix='r/') == {
-        'r/map': 'r/map/l', 'r/map/l': 'map'}
-
-
 @pytest.mark.parametrize('prefix', ['', 'r/'])
 def test_a_name_leaves_no_id(prefix):
     error = only_tree_error(model_file('<link name="/"/>'), frame_prefix=prefix)
@@ -221,27 +216,41 @@ def test_a_urdf_keeps_its_own_tree(data, root, prefix, anchor):
     assert {child: parent for child, parent in found.items() if parent} == expected
 
 
-def test_the_link_world_of_a_urdf_has_the_prefix_and_the_world_itself_has_not():
-    text = urdf.robot(
-        '<link name="world"/><link name="a"/>' + urdf.joint('j', 'world', 'a', 'fixed'))
-    assert parents_of(text) == {'a': 'world'}
-    assert parents_of(text, frame_prefix='r/') == {'r/world': '', 'r/a': 'r/world'}
-    assert parents_of(text, root_frame='map', anchor_models=AnchorModels.ALL) == {
-        'world': 'map', 'a': 'world'}
-    assert parents_of(text, root_frame='r/world', frame_prefix='r/') == {'r/a': 'r/world'}
-    assert parents_of(text, kinds=frozenset({Kind.JOINT})) == {'j': 'world'}
+IN_MAP = world_file(model('map', LINK))
+URDF_IN_WORLD = urdf.robot(
+    '<link name="world"/><link name="a"/>' + urdf.joint('j', 'world', 'a', 'fixed'))
+URDF_WITH_CAMERA = urdf.robot(
+    '<link name="r"/><link name="a"/>' + urdf.joint('j', 'r', 'a', 'fixed')
+    + urdf.gazebo('<sensor name="eye" type="camera"/>', 'a') + urdf.gazebo('<frame name="f"/>'))
+SHAPES = model_file(
+    '<link name="l"><inertial/><visual name="x"/><collision name="x"/></link>'
+    '<link name="k"/>' + fixed_joint('j', 'l', 'k'))
 
 
-def test_sensors_of_a_urdf_are_leaves_below_its_links_and_joints_come_on_demand():
-    camera = '<sensor name="eye" type="camera"/>'
-    text = urdf.robot(
-        '<link name="r"/><link name="a"/>' + urdf.joint('j', 'r', 'a', 'fixed')
-        + urdf.gazebo(camera, 'a') + urdf.gazebo('<frame name="f"/>'))
-    assert parents_of(text) == {
-        'r': '', 'a': 'r', 'a/eye': 'a', 'a/eye_optical': 'a/eye', 'f': 'r'}
-    assert parents_of(text, kinds=None) == {'r': '', 'a': 'r'}
-    assert parents_of(text, kinds=frozenset({Kind.LINK, Kind.JOINT, Kind.MODEL})) == {
-        'r': '', 'a': 'r', 'j': 'a'}
+@pytest.mark.parametrize(('text', 'options', 'parents'), [
+    (IN_MAP, {'root_frame': 'top'}, {'map': 'map/l', 'map/l': 'top'}),
+    # A prefix tells a frame from the root.
+    (IN_MAP, {'root_frame': 'map', 'frame_prefix': 'r/'}, {'r/map': 'r/map/l', 'r/map/l': 'map'}),
+    (CELL, {'model': 'free'}, {'free': 'free/l', 'free/l': 'world', 'free/f': 'free'}),
+    (SHAPES, {'kinds': ALL_KINDS}, {
+        'm': 'l', 'l': '', 'l/inertial': 'l', 'l/visual/x': 'l', 'l/collision/x': 'l',
+        'k': 'l', 'j': 'k'}),
+    # The link "world" of a URDF has the prefix, and the world itself has not.
+    (URDF_IN_WORLD, {}, {'a': 'world'}),
+    (URDF_IN_WORLD, {'frame_prefix': 'r/'}, {'r/world': '', 'r/a': 'r/world'}),
+    (URDF_IN_WORLD, {'root_frame': 'map', 'anchor_models': AnchorModels.ALL},
+     {'world': 'map', 'a': 'world'}),
+    (URDF_IN_WORLD, {'root_frame': 'r/world', 'frame_prefix': 'r/'}, {'r/a': 'r/world'}),
+    (URDF_IN_WORLD, {'kinds': frozenset({Kind.JOINT})}, {'j': 'world'}),
+    # Sensors of a URDF are leaves below its links, and joints come on demand.
+    (URDF_WITH_CAMERA, {}, {
+        'r': '', 'a': 'r', 'a/eye': 'a', 'a/eye_optical': 'a/eye', 'f': 'r'}),
+    (URDF_WITH_CAMERA, {'kinds': None}, {'r': '', 'a': 'r'}),
+    (URDF_WITH_CAMERA, {'kinds': frozenset({Kind.LINK, Kind.JOINT, Kind.MODEL})},
+     {'r': '', 'a': 'r', 'j': 'a'}),
+])
+def test_parents(text, options, parents):
+    assert parents_of(text, **options) == parents
 
 
 def test_kinds_by_format_are_the_default_ones_of_sdformat():
@@ -269,15 +278,6 @@ def test_the_default_kinds():
     assert {kind.label for kind in DEFAULT_KINDS} == {'model', 'link', 'frame', 'sensor'}
 
 
-def test_other_kinds():
-    text = model_file(
-        '<link name="l"><inertial/><visual name="x"/><collision name="x"/></link>'
-        '<link name="k"/>' + fixed_joint('j', 'l', 'k'))
-    assert parents_of(text, kinds=ALL_KINDS) == {
-        'm': 'l', 'l': '', 'l/inertial': 'l', 'l/visual/x': 'l', 'l/collision/x': 'l',
-        'k': 'l', 'j': 'k'}
-
-
 def test_what_is_not_published_stands_in_no_ones_way():
     text = model_file('<link name="l"/><frame name="f" attached_to="l"/>'
                       '<frame name="g" attached_to="f"/><link name="k"/>'
@@ -289,16 +289,6 @@ def test_what_is_not_published_stands_in_no_ones_way():
     assert parents(Kind.FRAME) == {'f': 'world', 'g': 'f'}
     assert parents(Kind.JOINT) == {'j': 'world'}
     assert parents() == {}
-
-
-def test_the_root_frame():
-    assert parents_of(world_file(f'<model name="m">{LINK}</model>'), root_frame='map') == {
-        'm': 'm/l', 'm/l': 'map'}
-
-
-def test_one_model_of_a_world():
-    parents = parents_of(CELL, model='free')
-    assert parents == {'free': 'free/l', 'free/l': 'world', 'free/f': 'free'}
 
 
 def test_one_model_that_is_held_by_another():

@@ -84,26 +84,49 @@ def test_urdf_is_refused():
 
 # One tree
 
-def test_first_link_is_the_canonical_link():
-    assert tree_of(model_file(TWO_LINKS)) == {
-        'a': None, 'm': ('a', 'm_fixed'), 'b': ('a', 'b_fixed')}
+TWO_MODELS = world_file(MODEL.format('a') + MODEL.format('b'))
+MOVING = TWO_LINKS + joint('revolute', pose='1 0 0 0 0 0')
+TREES = {
+    'the first link is the canonical link': (
+        model_file(TWO_LINKS), {}, {'a': None, 'm': ('a', 'm_fixed'), 'b': ('a', 'b_fixed')}),
+    'a static model is fixed to the world': (
+        model_file(f'<static>1</static>{TWO_LINKS}{joint("revolute")}'), {'root_frame': 'map'},
+        {'map': None, 'a': ('map', 'a_fixed'), 'm': ('a', 'm_fixed'), 'b': ('a', 'j')}),
+    'a joint to the world begins at the world': (
+        model_file(f'{LINK}{joint("prismatic", parent="world", child="l")}'), {},
+        {'world': None, 'l': ('world', 'j'), 'm': ('l', 'm_fixed')}),
+    'one of the models of a world': (
+        TWO_MODELS, {'model': 'b'}, {'b/l': None, 'b': ('b/l', 'b_fixed')}),
+    'the only model of a world need not be named': (
+        world_file(MODEL.format('a')), {}, {'a/l': None, 'a': ('a/l', 'a_fixed')}),
+    'a nested model begins at its own canonical link': (
+        model_file(f'{LINK}{joint("revolute", parent="l", child="n::l")}{MODEL.format("n")}'),
+        {'model': 'm::n'}, {'n/l': None, 'n': ('n/l', 'n_fixed')}),
+    'links are there whatever the kinds are': (
+        model_file(TWO_LINKS), {'kinds': frozenset({Kind.FRAME})},
+        {'a': None, 'b': ('a', 'b_fixed')}),
+    'names are those of TF and of joint states': (
+        model_file(f'<model name="n">{MOVING}</model>'),
+        {'frame_separator': '_', 'kinds': frozenset({Kind.LINK})},
+        {'n_a': None, 'n/j_frame': ('n_a', 'n/j'), 'n_b': ('n/j_frame', 'n_b_fixed')}),
+    'the prefix of frames is left out': (
+        model_file(LINK), {'frame_prefix': 'r/'}, {'l': None, 'm': ('l', 'm_fixed')}),
+    'a joint that is a frame is a link too': (
+        model_file(MOVING), {'kinds': frozenset({Kind.LINK, Kind.JOINT})},
+        {'a': None, 'j_frame': ('a', 'j'), 'b': ('j_frame', 'b_fixed'), 'j': ('b', 'j_fixed')}),
+}
+"""Files and options, with the parent of each link and the joint between them."""
+
+
+@pytest.mark.parametrize(('text', 'options', 'tree'), TREES.values(), ids=TREES)
+def test_tree(text, options, tree):
+    assert tree_of(text, **options) == tree
 
 
 def test_links_stand_before_all_that_are_not_below_them():
     text = model_file(
         '<link name="a"/><frame name="f"/><link name="b"/><frame name="g" attached_to="b"/>')
     assert list(tree_of(text)) == ['a', 'm', 'f', 'b', 'g']
-
-
-def test_static_model_is_fixed_to_the_world():
-    links = tree_of(model_file(f'<static>1</static>{TWO_LINKS}{joint("revolute")}'))
-    assert links['a'] == ('world', 'a_fixed')
-    assert links['b'] == ('a', 'j')
-
-
-def test_joint_to_the_world_begins_at_the_world():
-    links = tree_of(model_file(f'{LINK}{joint("prismatic", parent="world", child="l")}'))
-    assert links == {'world': None, 'l': ('world', 'j'), 'm': ('l', 'm_fixed')}
 
 
 def test_second_tree_is_fixed_to_the_world_with_a_warning():
@@ -114,24 +137,6 @@ def test_second_tree_is_fixed_to_the_world_with_a_warning():
         'a', 'b'}
 
 
-def test_root_frame_is_the_first_link_of_a_static_model():
-    assert 'map' in tree_of(model_file(f'<static>1</static>{LINK}'), root_frame='map')
-
-
-def test_model_of_a_world():
-    text = world_file(MODEL.format('a') + MODEL.format('b'))
-    assert tree_of(text, model='b') == {'b/l': None, 'b': ('b/l', 'b_fixed')}
-
-
-def test_only_model_of_a_world_need_not_be_named():
-    assert list(tree_of(world_file(MODEL.format('a')))) == ['a/l', 'a']
-
-
-def test_nested_model_begins_at_its_own_canonical_link():
-    text = model_file(f'{LINK}{joint("revolute", parent="l", child="n::l")}{MODEL.format("n")}')
-    assert tree_of(text, model='m::n') == {'n/l': None, 'n': ('n/l', 'n_fixed')}
-
-
 def test_loop_is_cut_with_a_warning():
     robot = robot_of(model_file(
         TWO_LINKS + joint('revolute') + joint('revolute', name='k')))
@@ -140,30 +145,6 @@ def test_loop_is_cut_with_a_warning():
 
 
 # Names
-
-def test_links_are_there_whatever_the_kinds_are():
-    assert list(tree_of(model_file(TWO_LINKS), kinds=frozenset({Kind.FRAME}))) == ['a', 'b']
-
-
-def test_names_are_those_of_tf_and_of_joint_states():
-    moving = joint('revolute', pose='1 0 0 0 0 0')
-    text = model_file(f'<model name="n">{TWO_LINKS}{moving}</model>')
-    links = tree_of(text, frame_separator='_', kinds=frozenset({Kind.LINK}))
-    assert links == {
-        'n_a': None, 'n/j_frame': ('n_a', 'n/j'), 'n_b': ('n/j_frame', 'n_b_fixed')}
-
-
-def test_prefix_of_frames_is_left_out():
-    assert list(tree_of(model_file(LINK), frame_prefix='r/')) == ['l', 'm']
-
-
-def test_joint_that_is_a_frame_is_a_link_too():
-    links = tree_of(
-        model_file(TWO_LINKS + joint('revolute', pose='1 0 0 0 0 0')),
-        kinds=frozenset({Kind.LINK, Kind.JOINT}))
-    assert links['j'] == ('b', 'j_fixed')
-    assert links['j_frame'] == ('a', 'j')
-
 
 def test_names_that_are_made_are_not_those_of_others():
     links = tree_of(model_file(

@@ -49,10 +49,6 @@ def only_marker(content, **options):
     return marker
 
 
-def extent_of(points):
-    return points.min(axis=0), points.max(axis=0)
-
-
 @pytest.mark.parametrize(('geometry', 'reason'), [
     (MESH.format('none.stl', ''), 'the mesh "none.stl" is not found: it is not in "."; '),
     (MESH.format('model://none/a.stl', ''), 'the mesh "model://none/a.stl" is not found: '),

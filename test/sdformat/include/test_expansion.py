@@ -20,6 +20,7 @@ from sdf_pose_bridge import load
 
 LEAF = """<sdf version="1.9"><model name="leaf"><pose>0 0 1 0 0 0</pose>
 <link name="body"><pose>0 1 0 0 0 0</pose></link></model></sdf>"""
+LIGHT = '<sdf version="1.9"><light name="lamp" type="point"><pose>9 0 0 0 0 0</pose></light></sdf>'
 TWO_MODELS = ('<sdf version="1.9"><model name="a"><link name="l"/></model>'
               '<model name="b"><link name="l"/></model></sdf>')
 
@@ -77,28 +78,16 @@ def test_first_error_of_an_included_file_names_the_way_there(tmp_path):
     (include(content='<pose/><placement_frame>zzz</placement_frame>'), 'POSE_RELATIVE_TO_INVALID'),
     (include(content='<plugin name="p"/>'), 'ATTRIBUTE_MISSING'),
     (include(attributes='merge="maybe"'), 'ATTRIBUTE_INVALID'),
+    (include('light.sdf', '<static>maybe</static>'), 'ELEMENT_INVALID'),
+    (include('light.sdf', '<pose>1 2</pose>'), 'ELEMENT_INVALID'),
+    (include('nothing.sdf'), 'ELEMENT_MISSING'),
+    (include('no_model.sdf'), 'ELEMENT_MISSING'),
+    (include('two_models.sdf'), 'ELEMENT_INCORRECT_TYPE'),
 ])
 def test_wrong_include_gives_one_error_with_its_line(errors_in, tmp_path, wrong, code):
-    (error,) = errors_in('\n' + wrong)
-    assert (error.code, error.file, error.line) == (code, str(tmp_path / 'world.sdf'), 2)
-
-
-@pytest.mark.parametrize('content', ['<static>maybe</static>', '<pose>1 2</pose>'])
-def test_wrong_include_of_a_light_gives_one_error_with_its_line(errors_in, tmp_path, content):
-    light = '<sdf version="1.9"><light name="x" type="point"/></sdf>'
-    (error,) = errors_in('\n' + include('light.sdf', content), light=light)
-    assert (error.code, error.file, error.line) == (
-        'ELEMENT_INVALID', str(tmp_path / 'world.sdf'), 2)
-
-
-@pytest.mark.parametrize(('text', 'code'), [
-    ('<sdf version="1.9"/>', 'ELEMENT_MISSING'),
-    ('<sdf version="1.9"><world name="w"/></sdf>', 'ELEMENT_MISSING'),
-    (TWO_MODELS, 'ELEMENT_INCORRECT_TYPE'),
-])
-def test_file_without_one_element_at_its_top_gives_an_error_at_the_include(
-        errors_in, tmp_path, text, code):
-    (error,) = errors_in('\n' + include('bad.sdf'), bad=text)
+    (error,) = errors_in(
+        '\n' + wrong, light=LIGHT, nothing='<sdf version="1.9"/>', two_models=TWO_MODELS,
+        no_model='<sdf version="1.9"><world name="w"/></sdf>')
     assert (error.code, error.file, error.line) == (code, str(tmp_path / 'world.sdf'), 2)
 
 
@@ -202,9 +191,6 @@ def test_64_files_inside_one_another_are_read(tmp_path):
 
 
 # Includes elsewhere than in models and worlds
-
-LIGHT = '<sdf version="1.9"><light name="lamp" type="point"><pose>9 0 0 0 0 0</pose></light></sdf>'
-
 
 def in_link(content):
     return ('<model name="m"><link name="l"><pose>5 0 0 0 0 0</pose>' + content
@@ -370,31 +356,30 @@ def test_name_or_reference_that_an_include_overrides_is_not_checked(scene_of, te
 
 # What an include overrides
 
-def test_include_without_overrides(scene_of):
-    scene = scene_of(include())
-    assert_at(scene, 'leaf::body', (0, 1, 1))
+DESK = '<frame name="desk"><pose>0 0 5 0 0 0</pose></frame>'
+TURNED = LEAF.replace('<pose>0 0 1 0 0 0', '<pose degrees="true">0 0 1 0 0 180')
+PLACED = LEAF.replace('name="leaf"', 'name="leaf" placement_frame="body"')
+OVERRIDES = {
+    'nothing': ('', LEAF, {'leaf::body': (0, 1, 1)}),
+    'the name': ('<name>n</name>', LEAF, {'n::body': (0, 1, 1)}),
+    'the pose': ('<pose relative_to="desk">1 0 0 0 0 0</pose>', LEAF, {'leaf': (1, 0, 5)}),
+    'an empty pose': ('<pose/>', LEAF, {'leaf': (0, 0, 0)}),
+    'attributes of the pose': (
+        '<pose>0 0 0 0 0 3.141592653589793</pose>', TURNED, {'leaf': (0, 0, 0, 0, 0, 1, 0)}),
+    'the placement frame': (
+        '<pose>0 0 5 0 0 0</pose><placement_frame>body</placement_frame>', LEAF,
+        {'leaf::body': (0, 0, 5), 'leaf': (0, -1, 5)}),
+    'the pose, not the placement frame': (
+        '<pose>0 0 5 0 0 0</pose>', PLACED, {'leaf::body': (0, 0, 5)}),
+}
 
 
-def test_include_has_a_name(scene_of):
-    scene = scene_of(include(content='<name>n</name>') + posed('frame', 'f', '', 'n::body'))
-    assert_at(scene, 'f', (0, 1, 1))
-
-
-def test_include_has_a_pose(scene_of):
-    scene = scene_of(
-        '<frame name="f"><pose>0 0 5 0 0 0</pose></frame>'
-        + include(content='<pose relative_to="f">1 0 0 0 0 0</pose>'))
-    assert_at(scene, 'leaf', (1, 0, 5))
-
-
-def test_empty_pose_of_an_include_is_the_identity(scene_of):
-    assert_at(scene_of(include(content='<pose/>')), 'leaf', (0, 0, 0))
-
-
-def test_pose_of_an_include_replaces_the_attributes_too(scene_of):
-    leaf = LEAF.replace('<pose>0 0 1 0 0 0', '<pose degrees="true">0 0 1 0 0 180')
-    scene = scene_of(include(content='<pose>0 0 0 0 0 3.141592653589793</pose>'), leaf=leaf)
-    assert_at(scene, 'leaf', (0, 0, 0, 0, 0, 1, 0))
+@pytest.mark.parametrize(
+    ('content', 'leaf', 'expected'), OVERRIDES.values(), ids=OVERRIDES)
+def test_include_overrides(scene_of, content, leaf, expected):
+    scene = scene_of(DESK + include(content=content), leaf=leaf)
+    for name, pose in expected.items():
+        assert_at(scene, name, pose)
 
 
 @pytest.mark.parametrize(('written', 'override', 'is_static'), [
@@ -404,19 +389,6 @@ def test_include_is_static(scene_of, written, override, is_static):
         include(content=f'<static>{override}</static>'),
         leaf=model_file(f'<static>{written}</static>{LINK}'))
     assert bool(scene.static_models) == is_static
-
-
-def test_include_has_a_placement_frame(scene_of):
-    scene = scene_of(include(
-        content='<pose>0 0 5 0 0 0</pose><placement_frame>body</placement_frame>'))
-    assert_at(scene, 'leaf::body', (0, 0, 5))
-    assert_at(scene, 'leaf', (0, -1, 5))
-
-
-def test_placement_frame_of_the_file_stays_with_the_pose_of_the_include(scene_of):
-    leaf = LEAF.replace('name="leaf"', 'name="leaf" placement_frame="body"')
-    scene = scene_of(include(content='<pose>0 0 5 0 0 0</pose>'), leaf=leaf)
-    assert_at(scene, 'leaf::body', (0, 0, 5))
 
 
 def test_file_that_is_included_twice_has_independent_copies(scene_of):

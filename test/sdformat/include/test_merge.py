@@ -136,19 +136,12 @@ def test_model_is_not_merged_twice(errors_in):
     (ARM, '<pose relative_to="zzz"/>', 'POSE_RELATIVE_TO_INVALID'),
     (ARM, '<pose relative_to="__root__"/>', 'ATTRIBUTE_INVALID'),
     (ARM, '<static>maybe</static>', 'ELEMENT_INVALID'),
+    (ARM.replace('"arm"', '"world"'), '', 'RESERVED_NAME'),
+    (arm('<frame name="f"/>'), '', 'MODEL_WITHOUT_LINK'),
+    (ARM.replace('"arm"', '"arm" placement_frame="zzz"'), '', 'POSE_RELATIVE_TO_INVALID'),
 ])
-def test_wrong_override_gives_one_error(errors_in, text, content, code):
+def test_wrong_file_or_override_gives_one_error(errors_in, text, content, code):
     (error,) = errors_in(in_model(include(content)), arm=text)
-    assert error.code == code
-
-
-@pytest.mark.parametrize(('text', 'code'), [
-    (ARM.replace('"arm"', '"world"'), 'RESERVED_NAME'),
-    (arm('<frame name="f"/>'), 'MODEL_WITHOUT_LINK'),
-    (ARM.replace('"arm"', '"arm" placement_frame="zzz"'), 'POSE_RELATIVE_TO_INVALID'),
-])
-def test_wrong_file_is_refused_without_an_override(errors_in, text, code):
-    (error,) = errors_in(in_model(include()), arm=text)
     assert error.code == code
 
 

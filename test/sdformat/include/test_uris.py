@@ -57,10 +57,11 @@ def test_search_paths_are_used_for_every_scheme(uri, tmp_path):
     assert found(uri, tmp_path, [tmp_path / 'models']) == box
 
 
-def test_first_search_path_is_used(tmp_path):
+def test_first_search_path_is_used_and_the_environment_last(tmp_path):
     write(tmp_path / 'b', 'box')
     box = write(tmp_path / 'a', 'box')
     assert found('model://box', tmp_path, [tmp_path / 'a', tmp_path / 'b']) == box
+    assert found('model://box', tmp_path, [tmp_path / 'a'], SDF_PATH=str(tmp_path / 'b')) == box
 
 
 @pytest.mark.parametrize('uri', ['', 'folder', 'none.stl', 'a\x00b'])
@@ -116,12 +117,6 @@ def test_relative_path_is_searched_in_the_working_directory_last(tmp_path, monke
 def test_paths_of_the_environment_are_searched(variable, tmp_path):
     box = write(tmp_path / 'models', 'box')
     assert found('model://box', tmp_path, **{variable: f'/nowhere:{tmp_path / "models"}'}) == box
-
-
-def test_search_paths_come_before_those_of_the_environment(tmp_path):
-    write(tmp_path / 'b', 'box')
-    box = write(tmp_path / 'a', 'box')
-    assert found('model://box', tmp_path, [tmp_path / 'a'], SDF_PATH=str(tmp_path / 'b')) == box
 
 
 def test_package_is_found_by_its_marker(tmp_path):

@@ -14,10 +14,8 @@ from sdf_pose_bridge.problems import MOST_PROBLEMS
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
 TWO = link('a') + link('b')
-LIMIT = '<limit effort="1" velocity="1"/>'
-
-
-@pytest.mark.parametrize(('text', 'message'), [
+NOT_FINITE = '<origin xyz="0 0 inf"/>'
+REFUSED = {'PARSING_ERROR': [
     (f'<robot>{link("a")}</robot>', 'the robot has no name'),
     (robot(''), 'the robot has no <link>'),
     (robot('<link/>' + link('a')), 'the link has no name'),
@@ -44,32 +42,23 @@ LIMIT = '<limit effort="1" velocity="1"/>'
     (robot(TWO + joint('j', 'a', 'b', 'continuous', '<dynamics/>')), 'neither damping nor'),
     (robot(TWO + joint('j', 'a', 'b', 'continuous', '<safety_controller/>')),
      '<safety_controller> has no k_velocity'),
-])
-def test_broken_robot_is_refused(text, message):
-    error = only_error(text)
-    assert error.code == 'PARSING_ERROR'
-    assert message in error.message
-
-
-NOT_FINITE = '<origin xyz="0 0 inf"/>'
-
-
-@pytest.mark.parametrize('text', [
+], 'ELEMENT_INVALID': [(text, 'the numbers must be finite') for text in (
     robot(TWO + joint('j', 'a', 'b', 'fixed', NOT_FINITE)),
     robot(link('a', shape('visual', NOT_FINITE))),
     robot(link('a', '<visual><geometry><box size="nan 1 1"/></geometry></visual>')),
     robot(NOT_FINITE + link('a')),
-])
-def test_vector_that_is_not_finite_is_refused(text):
+)], 'DUPLICATE_NAME': [
+    (robot(TWO + joint('j', 'a', 'b') + joint('k', 'a', 'b')),
+     '"b" is already the child of joint "j"'),
+]}
+
+
+@pytest.mark.parametrize(('code', 'text', 'message'), [
+    (code, *case) for code, cases in REFUSED.items() for case in cases])
+def test_broken_robot_is_refused(code, text, message):
     error = only_error(text)
-    assert error.code == 'ELEMENT_INVALID'
-    assert 'the numbers must be finite' in error.message
-
-
-def test_link_with_two_parents_is_refused():
-    error = only_error(robot(TWO + joint('j', 'a', 'b') + joint('k', 'a', 'b')))
-    assert error.code == 'DUPLICATE_NAME'
-    assert '"b" is already the child of joint "j"' in error.message
+    assert error.code == code
+    assert message in error.message
 
 
 def test_error_names_line_and_element():
