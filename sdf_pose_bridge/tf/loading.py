@@ -26,7 +26,11 @@ from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.pose_setting import pose_change
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.file_change import FileChange
-from sdf_pose_bridge.sdformat.include.uris import model_file_from_directory, resource_finder
+from sdf_pose_bridge.sdformat.include.uris import (
+    model_file_from_directory,
+    ModelFile,
+    resource_finder,
+)
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file, xml_from_bytes
 from sdf_pose_bridge.tf.joint_positions import JointPositions
@@ -64,11 +68,11 @@ def loaded_scene_from_request(
     """
     read_since_ns = time.time_ns()
     begin = time.perf_counter()
-    path, manifests, warnings = _file_from_request(request)
-    text = bytes_from_file(str(path), Usage()) if request.sdf_file else request.robot_description
+    path, manifest, warnings = _file_from_request(request)
+    text = bytes_from_file(path, Usage()) if request.sdf_file else request.robot_description
     is_made_urdf = request.description_format is DescriptionFormat.URDF
     scene = load_text(
-        text, str(path), resource_paths=request.resource_paths,
+        text, path, resource_paths=request.resource_paths,
         on_missing_include=request.on_missing_include, shapes=is_made_urdf, texts=texts)
     options = request.tf_options
     tree = tf_tree_from_scene(scene, options)
@@ -82,7 +86,7 @@ def loaded_scene_from_request(
     found = dict.fromkeys((*warnings, *warnings_of_urdf, *scene.warnings, *tree.warnings))
     return LoadedScene(
         request=request,
-        path=path,
+        path=Path(path),
         text=text,
         description=description,
         scene=scene,
@@ -91,7 +95,7 @@ def loaded_scene_from_request(
         joint_positions=joint_positions,
         warnings=tuple(warning for warning in found if not warning.is_for_gazebo),
         gazebo_warning_count=sum(warning.is_for_gazebo for warning in found),
-        files=(*manifests, *(scene.files if request.sdf_file else scene.files[1:])),
+        files=(*filter(None, [manifest]), *(scene.files if request.sdf_file else scene.files[1:])),
         read_since_ns=read_since_ns,
         seconds=time.perf_counter() - begin,
     )
@@ -176,16 +180,13 @@ def files_behind_error(error: Exception, request: LoadRequest) -> list[str]:
     return list(dict.fromkeys(files))
 
 
-def _file_from_request(
-    request: LoadRequest,
-) -> tuple[Path, tuple[str, ...], tuple[SdfWarning, ...]]:
-    """Return the path as in :class:`LoadedScene`, and manifests and warnings on the way to it."""
+def _file_from_request(request: LoadRequest) -> ModelFile:
+    """Return the path as in :class:`LoadedScene`, and the manifest that leads to it, or ''."""
     if not request.sdf_file:
-        return Path(request.source), (), ()
+        return ModelFile(request.source, '', ())
     finder = resource_finder(request.resource_paths)
     path = finder.path_from_address(request.sdf_file)
     # Path.is_dir raises for a path that is too long; reading the file gives a better message.
     if not os.path.isdir(path):  # noqa: PTH112
-        return path, (), ()
-    chosen = model_file_from_directory(str(path), Usage())
-    return Path(chosen.path), (chosen.manifest,), chosen.warnings
+        return ModelFile(str(path), '', ())
+    return model_file_from_directory(str(path), Usage())

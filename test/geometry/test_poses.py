@@ -118,23 +118,10 @@ def more_poses_than_a_block():
     return poses
 
 
-def test_products_in_several_blocks_are_the_same_as_one_by_one():
-    first, second = more_poses_than_a_block()
-    expected = rows(map(pose_product, map(Pose._make, first), map(Pose._make, second)))
-    np.testing.assert_array_equal(pose_products(first, second), expected)
-
-
 def test_the_product_of_one_pose_and_several_blocks():
     (first, *_), second = more_poses_than_a_block()
     expected = rows(pose_product(Pose(*first), Pose(*each)) for each in second)
     np.testing.assert_array_equal(pose_products(first[np.newaxis], second), expected)
-
-
-def test_relative_poses_in_several_blocks_are_the_same_as_one_by_one():
-    first, second = more_poses_than_a_block()
-    expected = rows(
-        relative_pose(Pose(*a), Pose(*b)) for a, b in zip(first, second, strict=True))
-    np.testing.assert_array_equal(relative_poses(first, second), expected)
 
 
 @pytest.mark.parametrize('count', [1, 5])

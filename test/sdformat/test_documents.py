@@ -19,16 +19,6 @@ from urdf_texts import joint, link, origin
 from sdf_pose_bridge import load, load_text, SdfError
 
 
-def test_missing_file_is_refused(tmp_path):
-    (error,) = errors_of_file(tmp_path / 'none.sdf')
-    assert (error.code, error.file) == ('FILE_READ', str(tmp_path / 'none.sdf'))
-
-
-def test_directory_is_refused(tmp_path):
-    (error,) = errors_of_file(tmp_path)
-    assert error.code == 'FILE_READ'
-
-
 @pytest.mark.parametrize(('text', 'code'), [
     ('<sdf/>', 'FILE_READ'),
     ('<sdf Version="1.9"/>', 'FILE_READ'),
