@@ -8,6 +8,7 @@ import bisect
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 import difflib
+from itertools import count
 import re
 
 SEPARATOR = '::'
@@ -59,6 +60,14 @@ def scoped_name(scope: str, name: str) -> str:
     :param scope: absolute name of its scope; empty for a world or the implicit root.
     """
     return f'{scope}{SEPARATOR}{name}' if scope else name
+
+
+def unused_name(name: str, used: set[str], separator: str = '_') -> str:
+    """Return a name, with a number behind it if it is used, and add it to the used ones."""
+    candidates = (f'{name}{separator}{number}' if number else name for number in count())
+    unused = next(each for each in candidates if each not in used)
+    used.add(unused)
+    return unused
 
 
 def shortened(value: str, longest: int = _LONGEST_VALUE) -> str:

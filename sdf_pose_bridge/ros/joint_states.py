@@ -163,12 +163,10 @@ class JointStates:
         """The joints that no message has named in time."""
         target = self._next_target
         positions = target.frames.positions
-        found = None if self._end_grace in self._due else positions.unreported()
-        if found is None:
-            return MissingJoints()
-        name = positions.names[found.first]
-        return MissingJoints(found.joint_count, name, [
-            topic.name for topic in target.topics if not positions.unknown([name], topic.model)])
+        found = [] if self._end_grace in self._due else positions.unreported()
+        return MissingJoints(len(found), found[0], [
+            topic.name for topic in target.topics if not positions.unknown(found[:1], topic.model)
+        ]) if found else MissingJoints()
 
     def _open_missing_topics(self) -> None:
         """Make some subscriptions now, and leave the others to a task."""
@@ -349,7 +347,7 @@ class JointStates:
         topic.last_period = self._period
         topic.warn_about_invalid(positions.update(
             meaning.selection, message.positions, stamp_ns, ignore_stamps=ignores_stamps))
-        if self._has_reported_missing and positions.unreported() is None:
+        if self._has_reported_missing and not positions.unreported():
             self._has_reported_missing = False
             self._logger.info('all joints have been reported now')
         rows = self._meanings.rows(meaning)

@@ -166,7 +166,7 @@ def line_about_joints_at_rest(scene: Scene, model: str, frame_names: FrameNames)
         dofs[0] for joint in scene.joints
         if is_inside[joint.element]
         and (dofs := [dof for dof in dofs_from_joint(joint) if dof.axis.mimic is None])
-        and scene.static_models.isdisjoint(scene.with_ancestors(joint.element))]
+        and not scene.is_static(joint.element)]
     if not free:
         return ''
     first = np.array([free[0].joint.element], np.int32)

@@ -143,7 +143,7 @@ def set_pose(
         msg = 'the pose is in the parameter robot_description, not in a file'
         raise PoseNotSetError(msg, Place(str(loaded.path)))
     # Imported here because it takes 7 ms, and few nodes write files.
-    from sdf_pose_bridge.tf.frame_setting import frame_change_from_request
+    from sdf_pose_bridge.tf.loading import frame_change_from_request
     change = reader.result(
         loaded.request, frame_change_from_request, loaded.request,
         fingerprint_of_scene(loaded.scene), request.frame, _pose_from_request(request, loaded),

@@ -123,7 +123,7 @@ def _scene(
         # Many files have no includes and do not need this import.
         from sdf_pose_bridge.sdformat.include.expansion import IncludeExpansion
         expansion = IncludeExpansion(
-            resource_finder(resource_paths, os.environ), sources,
+            resource_finder(resource_paths), sources,
             skips_missing=on_missing_include is MissingInclude.SKIP,
             model_by_itself=lambda root: _model_by_itself(root, sources))
         expansion.expand(document)

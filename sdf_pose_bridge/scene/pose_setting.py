@@ -92,7 +92,7 @@ def _change_of_own_pose(
 ) -> PoseChange:
     _check_kind(scene, element)
     path = _place_of_pose(scene, element)[0]
-    cache = Path(os.path.realpath(resource_finder((), os.environ).fuel_cache))
+    cache = Path(os.path.realpath(resource_finder().fuel_cache))
     if cache in Path(os.path.realpath(path)).parents:
         msg = 'the file is in the cache of Gazebo Fuel; copy the model and include the copy'
         raise PoseNotSetError(msg, Place(path))

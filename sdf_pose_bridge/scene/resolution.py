@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from itertools import compress
 import math
@@ -140,18 +141,18 @@ def _place_automatic_inertials(root_poses: PoseArray, elements: Elements) -> dic
         return {}
     indices = np.array([*automatic])
     links = elements.parents[indices]
-    collisions_of: dict[int, list[int]] = {}
+    collisions_of = defaultdict[int, list[int]](list)
     for index in np.flatnonzero(elements.kinds == Kind.COLLISION).tolist():
-        collisions_of.setdefault(int(elements.parents[index]), []).append(index)
+        collisions_of[int(elements.parents[index])].append(index)
     # One row for each collision, ordered by inertials; ``owners`` has the position of its own.
     collisions = [index for link in links.tolist() for index in collisions_of[link]]
-    parts = [part for inertial in automatic.values() for part in inertial.collisions]
-    owners = np.repeat(
-        np.arange(len(indices)), [len(inertial.collisions) for inertial in automatic.values()])
+    counts = [len(inertial.solids) for inertial in automatic.values()]
+    owners = np.repeat(np.arange(len(counts)), counts)
+    starts = np.cumsum([0, *counts[:-1]])
+    solids = [solid for inertial in automatic.values() for solid in inertial.solids]
+    masses = np.concatenate([inertial.masses_kg for inertial in automatic.values()])
     points = transformed_points(
-        root_poses[collisions], np.array([(0.0, 0.0, part.center_z_m) for part in parts]))
-    masses = np.array([part.mass_kg for part in parts])
-    starts = np.searchsorted(owners, np.arange(len(indices)))
+        root_poses[collisions], np.array([(0.0, 0.0, solid.center_z_m) for solid in solids]))
     totals = np.add.reduceat(masses, starts)
     root_poses[indices] = root_poses[links]
     has_mass = totals != 0.0
@@ -159,7 +160,7 @@ def _place_automatic_inertials(root_poses: PoseArray, elements: Elements) -> dic
     root_poses[indices[has_mass], :3] = sums[has_mass] / totals[has_mass, np.newaxis]
     to_links = matrix_from_quaternion(root_poses[links, 3:]).transpose(0, 2, 1)[owners]
     axes = to_links @ matrix_from_quaternion(root_poses[collisions, 3:])
-    moments = np.array([part.moments_kg_m2 for part in parts])
+    moments = masses[:, np.newaxis] * [solid.moments_m2 for solid in solids]
     offsets = np.einsum('nij,nj->ni', to_links, points - root_poses[indices[owners], :3])
     matrices = np.add.reduceat(moved_moments(
         np.einsum('nij,nj,nkj->nik', axes, moments, axes), masses, offsets), starts)

@@ -39,8 +39,29 @@ class Joint(NamedTuple):
     """Movement of a screw joint along its axis in one turn; positive for a right-handed thread."""
 
 
+class ReadOnly:
+    """Makes the arrays and mappings of a frozen dataclass read-only, in a copy by pickle too."""
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
+            elif isinstance(value, dict):
+                vars(self)[name] = MappingProxyType(value)
+
+    def __getstate__(self) -> dict[str, Any]:
+        # Mappings that are read-only cannot be pickled.
+        return {
+            name: dict(value) if isinstance(value, MappingProxyType) else value
+            for name, value in vars(self).items()}
+
+    def __setstate__(self, state: Mapping[str, Any]) -> None:
+        vars(self).update(state)
+        self.__post_init__()
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class Scene:
+class Scene(ReadOnly):
     """
     All elements of a file that have a pose.
 
@@ -105,23 +126,6 @@ class Scene:
     urdf_root: str | None
     """The root link of a URDF that is the file or the text itself; None for SDFormat. If it is
     called ``world``, it is the implicit root."""
-
-    def __post_init__(self) -> None:
-        for name, value in vars(self).items():
-            if isinstance(value, np.ndarray):
-                value.setflags(write=False)
-            elif isinstance(value, dict):
-                vars(self)[name] = MappingProxyType(value)
-
-    def __getstate__(self) -> dict[str, Any]:
-        # Mappings that are read-only cannot be pickled.
-        return {
-            name: dict(value) if isinstance(value, MappingProxyType) else value
-            for name, value in vars(self).items()}
-
-    def __setstate__(self, state: Mapping[str, Any]) -> None:
-        vars(self).update(state)
-        self.__post_init__()
 
     def __repr__(self) -> str:
         return f'<Scene of {self.path}: {len(self.names)} elements>'
@@ -219,6 +223,10 @@ class Scene:
     def top_level_element(self, index: int) -> int:
         """Return the element below its root that an element is in, or is; of a root itself."""
         return [index, *self.with_ancestors(index)][-2]
+
+    def is_static(self, index: int) -> bool:
+        """Return whether an element is in a static model, or is one."""
+        return not self.static_models.isdisjoint(self.with_ancestors(index))
 
     @cached_property
     def default_references(self) -> Indices:

@@ -19,7 +19,7 @@ import numpy as np
 
 from sdf_pose_bridge.errors import ElementMissingError, LinkInertiaError
 from sdf_pose_bridge.geometry.rotations import Floats
-from sdf_pose_bridge.sdformat.shape_types import SHAPE_TYPES
+from sdf_pose_bridge.sdformat.shape_types import SHAPE_TYPES, Solid
 from sdf_pose_bridge.sdformat.shapes import shape_of
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.values import boolean_from_text, number_of_child
@@ -64,21 +64,13 @@ class Inertial(NamedTuple):
             and smallest + tolerance >= 0.0 and smallest + middle + tolerance >= largest)
 
 
-class CollisionMass(NamedTuple):
-    """The mass of a collision that an automatic inertial is computed from."""
-
-    mass_kg: float
-    center_z_m: float
-    """The z of the center of mass in the frame of the collision; its x and y are 0."""
-    moments_kg_m2: tuple[float, ...]
-    """Moments about axes through the center of mass, parallel to the axes of the collision."""
-
-
 class AutomaticInertial(NamedTuple):
-    """The masses from which an automatic inertial is computed."""
+    """The collisions from which an automatic inertial is computed."""
 
-    collisions: tuple[CollisionMass, ...]
-    """The masses of the collisions of its link, in file order."""
+    solids: tuple[Solid, ...]
+    """The shapes of the collisions of its link, in file order."""
+    masses_kg: tuple[float, ...]
+    """The mass of each of them, by its density."""
     mass_kg: float | None
     """Their total mass, if the file has it."""
 
@@ -166,7 +158,7 @@ def _automatic_inertial(
         msg = 'the pose of an automatic inertial is ignored; the collisions give it'
         sources.warning(pose, msg)
     default_density = number_of_child(inertial, 'density', DEFAULT_DENSITY_KG_M3)
-    masses = []
+    solids, masses_kg = [], []
     for collision in collisions:
         shape = shape_of(collision)
         if shape is not None and shape.type == 'mesh':
@@ -185,10 +177,8 @@ def _automatic_inertial(
                    'positive dimensions and density')
             sources.error(LinkInertiaError, collision, msg)
         else:
-            part_kg = density_kg_m3 * solid.volume_m3
-            masses.append(CollisionMass(
-                part_kg, solid.center_z_m,
-                tuple(part_kg * moment for moment in solid.moments_m2)))
+            solids.append(solid)
+            masses_kg.append(density_kg_m3 * solid.volume_m3)
     mass_kg = None if first_child(inertial, 'mass') is None else (
         number_of_child(inertial, 'mass', 1.0))
-    return AutomaticInertial(tuple(masses), mass_kg) if masses else None
+    return AutomaticInertial(tuple(solids), tuple(masses_kg), mass_kg) if solids else None

@@ -53,17 +53,16 @@ from sdf_pose_bridge.sdformat.values import (
     choice_fault,
     frame_of_attribute,
     judged_value,
-    value_at,
 )
 from sdf_pose_bridge.sdformat.versions import allows_scoped_names
 from sdf_pose_bridge.sdformat.xml_tree import (
     attribute_of,
     child_elements,
-    child_value,
     described,
     first_child,
     is_foreign_itself,
     text_of,
+    value_at,
     value_of,
     WHITE_SPACE,
     with_ancestors,
@@ -368,7 +367,7 @@ class _Reader:
 
 def _model_details(xml: XmlElement) -> ModelDetails:
     return ModelDetails(
-        boolean_from_text(child_value(xml, 'static')) is True,
+        boolean_from_text(value_at(xml, 'static')) is True,
         frame_of_attribute(xml, 'canonical_link'), frame_of_attribute(xml, 'placement_frame'),
         tuple(
             etree.tostring(child, encoding='unicode', pretty_print=True, with_tail=False).rstrip()

@@ -23,13 +23,12 @@ from sdf_pose_bridge.sdformat.values import (
     number_of_child,
     numbers_from_text,
     numbers_of_child,
-    value_at,
 )
 from sdf_pose_bridge.sdformat.xml_tree import (
     attribute_of,
     child_elements,
-    child_value,
     first_child,
+    value_at,
     XmlElement,
 )
 
@@ -139,7 +138,7 @@ def shape_of(xml: XmlElement) -> Shape | None:
         type=tag,
         sizes_m=tuple(size_m for each in sizes_m for size_m in each),
         normal=numbers_of_child(shape, 'normal', _UP) if tag == 'plane' else _UP,
-        mesh_uri=child_value(shape, 'uri') if tag == 'mesh' else '',
+        mesh_uri=value_at(shape, 'uri') if tag == 'mesh' else '',
         submesh=value_at(shape, 'submesh/name'),
         mesh_scale=numbers_of_child(shape, 'scale', (1.0, 1.0, 1.0)),
         rgba=_color(xml),
@@ -158,7 +157,7 @@ def _color(xml: XmlElement) -> tuple[float, float, float, float] | None:
 
 def check_submesh(xml: XmlElement, sources: Sources) -> None:
     """Check that a part of a mesh has a name."""
-    if child_value(xml, 'name', '__default__') == '__default__':
+    if value_at(xml, 'name', '__default__') == '__default__':
         sources.error(ElementMissingError, xml, 'the <submesh> has no <name>')
 
 
@@ -167,7 +166,7 @@ def check_material(xml: XmlElement, sources: Sources) -> None:
     script, shader = first_child(xml, 'script'), first_child(xml, 'shader')
     if script is not None:
         for tag, error in (('uri', ElementInvalidError), ('name', ElementMissingError)):
-            value = child_value(script, tag, '__default__')
+            value = value_at(script, tag, '__default__')
             if value == '__default__' or (tag == 'uri' and not value):
                 msg = f'the <script> of a material has no <{tag}>, or an empty one'
                 sources.error(error, script, msg)

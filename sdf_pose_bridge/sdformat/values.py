@@ -19,8 +19,7 @@ from sdf_pose_bridge.sdformat.grammar import Item, ValueType
 from sdf_pose_bridge.sdformat.specification import Choice
 from sdf_pose_bridge.sdformat.xml_tree import (
     attribute_of,
-    first_child,
-    value_of,
+    value_at,
     WHITE_SPACE,
     XmlElement,
 )
@@ -243,26 +242,13 @@ def _streamed_numbers(text: str, count: int) -> Sequence[float]:
     return numbers
 
 
-def value_at(parent: XmlElement, path: str) -> str:
-    """
-    Return the value of a child element, or of a child of a child.
-
-    :param path: its tags, such as ``mass`` or ``limit/lower``; of each, the first child counts.
-    :return: the value; empty if there is no such element.
-    """
-    xml: XmlElement | None = parent
-    for tag in path.split('/'):
-        xml = None if xml is None else first_child(xml, tag)
-    return '' if xml is None else value_of(xml)
-
-
 def numbers_of_child(
     parent: XmlElement, path: str, default: tuple[float, ...],
 ) -> tuple[float, ...]:
     """
     Return the numbers in a child element.
 
-    :param path: as for :func:`value_at`.
+    :param path: as for :func:`~sdf_pose_bridge.sdformat.xml_tree.value_at`.
     :param default: the numbers if there is no child, or if it has fewer numbers than these.
     :return: as many numbers as there are in the default.
     """

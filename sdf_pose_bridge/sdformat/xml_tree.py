@@ -105,10 +105,17 @@ def value_of(xml: XmlElement) -> str:
     return text if text.isidentifier() else _WHITE_SPACE_RUN.sub(' ', text).strip(' ')
 
 
-def child_value(xml: XmlElement, tag: str, default: str = '') -> str:
-    """Return :func:`value_of` the first child element with a tag, or the default."""
-    child = first_child(xml, tag)
-    return default if child is None else value_of(child)
+def value_at(parent: XmlElement, path: str, default: str = '') -> str:
+    """
+    Return :func:`value_of` a child element, or of a child of a child.
+
+    :param path: its tags, such as ``mass`` or ``limit/lower``; of each, the first child counts.
+    :param default: the value if there is no such element.
+    """
+    xml: XmlElement | None = parent
+    for tag in path.split('/'):
+        xml = None if xml is None else first_child(xml, tag)
+    return default if xml is None else value_of(xml)
 
 
 def attribute_of(xml: XmlElement, name: str) -> str:

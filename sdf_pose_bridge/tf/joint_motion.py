@@ -100,7 +100,7 @@ class JointMotion:
         dofs: list[DegreeOfFreedom] = []
         bodies: list[int] = []
         for (body, joint), name in zip(tf_parents.joints.items(), names, strict=True):
-            if scene.static_models.isdisjoint(scene.with_ancestors(body)):
+            if not scene.is_static(body):
                 path = dofs_from_joint(joint, name)
                 is_reversed = scene.bodies[joint.parent] == body
                 dofs += map(_reversed, reversed(path)) if is_reversed else path

@@ -74,15 +74,6 @@ class Selection(NamedTuple):
     """All degrees of freedom in the same top-level models."""
 
 
-class UnreportedDofs(NamedTuple):
-    """Degrees of freedom without a known position."""
-
-    joint_count: int
-    """The number of their joints."""
-    first: int
-    """The first of them."""
-
-
 class JointPositions:
     """
     The positions of the degrees of freedom of a scene; all are zero at first.
@@ -139,12 +130,12 @@ class JointPositions:
         """Number of degrees of freedom without a reported position."""
         return int(np.count_nonzero(~self.is_reported))
 
-    def unreported(self) -> UnreportedDofs | None:
-        """Find the free degrees of freedom without a known position; None if there are none."""
-        dofs = np.flatnonzero(self._is_free & ~self.is_known)
-        if not len(dofs):
-            return None
-        return UnreportedDofs(len({self._joints[dof] for dof in dofs}), int(dofs[0]))
+    def unreported(self) -> list[str]:
+        """Return a name of each joint without a known position that does not follow another."""
+        names: dict[int, str] = {}
+        for dof in np.flatnonzero(self._is_free & ~self.is_known).tolist():
+            names.setdefault(self._joints[dof], self.names[dof])
+        return list(names.values())
 
     def selection(self, names: Sequence[str], model: str = '') -> Selection:
         """

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Read a file or a text, and make its TF tree."""
+"""Read a file or a text, make its TF tree, and find changes of the file that move a frame."""
 
 from __future__ import annotations
 
@@ -8,20 +8,52 @@ from collections.abc import Mapping
 import os
 from pathlib import Path
 import time
+from typing import NamedTuple
 
 from lxml import etree
 
-from sdf_pose_bridge.errors import AddressError, SdfError, SdfWarning, UriLookupError
+from sdf_pose_bridge.errors import (
+    AddressError,
+    Place,
+    PoseNotSetError,
+    SdfError,
+    SdfWarning,
+    UriLookupError,
+)
+from sdf_pose_bridge.geometry.poses import Pose, pose_inverse, pose_product
+from sdf_pose_bridge.scene.comparison import names_of_moved
 from sdf_pose_bridge.scene.loading import load_text
+from sdf_pose_bridge.scene.pose_setting import pose_change
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.include.uris import model_file_from_directory, resource_finder
+from sdf_pose_bridge.sdformat.file_change import FileChange
+from sdf_pose_bridge.sdformat.include.uris import (
+    model_file_from_directory,
+    ModelFile,
+    resource_finder,
+)
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file, xml_from_bytes
 from sdf_pose_bridge.tf.joint_positions import JointPositions
-from sdf_pose_bridge.tf.loaded_scene import DescriptionFormat, LoadedScene, LoadRequest
+from sdf_pose_bridge.tf.loaded_scene import (
+    DescriptionFormat,
+    fingerprint_of_scene,
+    LoadedScene,
+    LoadRequest,
+)
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.urdf_text import urdf_from_scene
+
+
+class FrameChange(NamedTuple):
+    """A change of one pose in a file."""
+
+    file: FileChange
+    diff: str
+    line: int
+    """The line of the pose, or of the element in which it is inserted."""
+    moved_frames: tuple[str, ...]
+    """The other frames that move."""
 
 
 def loaded_scene_from_request(
@@ -36,11 +68,11 @@ def loaded_scene_from_request(
     """
     read_since_ns = time.time_ns()
     begin = time.perf_counter()
-    path, manifests, warnings = _file_from_request(request)
-    text = bytes_from_file(str(path), Usage()) if request.sdf_file else request.robot_description
+    path, manifest, warnings = _file_from_request(request)
+    text = bytes_from_file(path, Usage()) if request.sdf_file else request.robot_description
     is_made_urdf = request.description_format is DescriptionFormat.URDF
     scene = load_text(
-        text, str(path), resource_paths=request.resource_paths,
+        text, path, resource_paths=request.resource_paths,
         on_missing_include=request.on_missing_include, shapes=is_made_urdf, texts=texts)
     options = request.tf_options
     tree = tf_tree_from_scene(scene, options)
@@ -54,7 +86,7 @@ def loaded_scene_from_request(
     found = dict.fromkeys((*warnings, *warnings_of_urdf, *scene.warnings, *tree.warnings))
     return LoadedScene(
         request=request,
-        path=path,
+        path=Path(path),
         text=text,
         description=description,
         scene=scene,
@@ -63,10 +95,47 @@ def loaded_scene_from_request(
         joint_positions=joint_positions,
         warnings=tuple(warning for warning in found if not warning.is_for_gazebo),
         gazebo_warning_count=sum(warning.is_for_gazebo for warning in found),
-        files=(*manifests, *(scene.files if request.sdf_file else scene.files[1:])),
+        files=(*filter(None, [manifest]), *(scene.files if request.sdf_file else scene.files[1:])),
         read_since_ns=read_since_ns,
         seconds=time.perf_counter() - begin,
     )
+
+
+def frame_change_from_request(
+    request: LoadRequest, fingerprint: bytes, frame: str, asked: Pose, reference: str,
+    positions: JointPositions | None,
+) -> FrameChange:
+    """
+    Find the change of a file that moves a frame to a measured pose. Nothing is written.
+
+    :param request: the request of the published scene, which has this fingerprint.
+    :param asked: the measured pose of the frame.
+    :param reference: the name of the frame in which it was measured; empty for the root frame.
+    :param positions: the positions of the joints at that time; None if they do not move.
+    :return: the change; the changed file is valid and can be published.
+    :raises SdfError: if no change of a single pose gives this pose.
+    """
+    loaded = loaded_scene_from_request(request)
+    scene = loaded.scene
+    if fingerprint_of_scene(scene) != fingerprint:
+        msg = 'the file has changed since it was read'
+        raise PoseNotSetError(msg, Place(str(loaded.path)))
+
+    def scene_with(texts: Mapping[str, bytes]) -> Scene:
+        return loaded_scene_from_request(request, texts).scene
+
+    def measured(scene: Scene, element: int) -> Pose:
+        tree = tf_tree_from_scene(scene, request.tf_options)
+        return PoseLookup(scene, tree, positions).pose_of_element(element, reference)
+
+    element, in_element = loaded.lookup.element(frame)
+    asked = pose_product(asked, pose_inverse(in_element))
+    change = pose_change(scene, element, asked, measured, scene_with)
+    moved = set(names_of_moved(scene, change.scene))
+    elements = loaded.tree.elements.tolist()
+    return FrameChange(change.file, change.file.diff, change.line, tuple(
+        frame_id for frame_id, other in zip(loaded.tree.frame_ids, elements, strict=True)
+        if other not in (-1, element) and scene.names[other] in moved))
 
 
 def _urdf(scene: Scene, request: LoadRequest) -> tuple[str, tuple[SdfWarning, ...]]:
@@ -104,23 +173,20 @@ def files_behind_error(error: Exception, request: LoadRequest) -> list[str]:
     files = [each.place.file for each in errors]
     missing = [each for each in errors if isinstance(each, UriLookupError)]
     if missing or isinstance(error, AddressError):
-        finder = resource_finder(request.resource_paths, os.environ)
+        finder = resource_finder(request.resource_paths)
         files += [
             *(str(Path(each.place.file).parent) for each in missing),
             *finder.search_paths, *finder.environment_paths]
     return list(dict.fromkeys(files))
 
 
-def _file_from_request(
-    request: LoadRequest,
-) -> tuple[Path, tuple[str, ...], tuple[SdfWarning, ...]]:
-    """Return the path as in :class:`LoadedScene`, and manifests and warnings on the way to it."""
+def _file_from_request(request: LoadRequest) -> ModelFile:
+    """Return the path as in :class:`LoadedScene`, and the manifest that leads to it, or ''."""
     if not request.sdf_file:
-        return Path(request.source), (), ()
-    finder = resource_finder(request.resource_paths, os.environ)
+        return ModelFile(request.source, '', ())
+    finder = resource_finder(request.resource_paths)
     path = finder.path_from_address(request.sdf_file)
     # Path.is_dir raises for a path that is too long; reading the file gives a better message.
     if not os.path.isdir(path):  # noqa: PTH112
-        return path, (), ()
-    chosen = model_file_from_directory(str(path), Usage())
-    return Path(chosen.path), (chosen.manifest,), chosen.warnings
+        return ModelFile(str(path), '', ())
+    return model_file_from_directory(str(path), Usage())

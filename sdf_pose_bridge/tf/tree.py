@@ -4,10 +4,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +22,7 @@ from sdf_pose_bridge.geometry.chains import ends_from_pointers, Indices
 from sdf_pose_bridge.geometry.poses import canonical_relative_poses, PoseArray
 from sdf_pose_bridge.names import hint_from_names, WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
-from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.scene.scene import ReadOnly, Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.anchors import AnchorModels, AnchorPatterns, detached_bodies
 from sdf_pose_bridge.tf.frame_ids import FrameNames, FrameNaming, with_ids_of_sensors
@@ -63,7 +62,7 @@ class TfOptions(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class TfTree:
+class TfTree(ReadOnly):
     """
     The frames to publish, in the order of the file; optical frames follow all others.
 
@@ -94,15 +93,6 @@ class TfTree:
     world: str
     """The name of the world that the frames belong to; empty for a model file."""
     warnings: tuple[SdfWarning, ...]
-
-    def __post_init__(self) -> None:
-        for value in vars(self).values():
-            if isinstance(value, np.ndarray):
-                value.setflags(write=False)
-
-    def __setstate__(self, state: Mapping[str, Any]) -> None:
-        vars(self).update(state)
-        self.__post_init__()
 
     @cached_property
     def parent_ids(self) -> tuple[str, ...]:

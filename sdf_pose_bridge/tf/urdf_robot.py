@@ -13,14 +13,13 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
-from itertools import count
 from typing import NamedTuple
 
 import numpy as np
 
 from sdf_pose_bridge.errors import Place, SdfWarning, UrdfNotMadeError
 from sdf_pose_bridge.geometry.poses import Pose, pose_inverse, pose_product, relative_pose
-from sdf_pose_bridge.names import quoted_names
+from sdf_pose_bridge.names import quoted_names, unused_name
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
@@ -114,14 +113,6 @@ def _model(scene: Scene, name: str) -> int:
     return int(models[0])
 
 
-def _new_name(name: str, used: set[str]) -> str:
-    """Return a name, with a number if it is used already, and add it to the used ones."""
-    candidates = (f'{name}_{number}' if number else name for number in count())
-    unused = next(each for each in candidates if each not in used)
-    used.add(unused)
-    return unused
-
-
 class _RobotMaker:
 
     def __init__(self, scene: Scene, model: int, options: TfOptions) -> None:
@@ -176,7 +167,7 @@ class _RobotMaker:
         # All but static ones, and those that a joint connects to the world.
         free = [
             frame for frame in tops for element in [self._elements[frame]]
-            if scene.static_models.isdisjoint(scene.with_ancestors(element))
+            if not scene.is_static(element)
             and (element not in tf_parents.joints
                  or scene.parents[tf_parents.parents[element]] >= 0)]
         if len(tops) == 1 and free:
@@ -194,7 +185,7 @@ class _RobotMaker:
         """Return the names, types and axes of joints with one degree of freedom each."""
         steps = []
         for dof in dofs:
-            name, axis = _new_name(dof.name, self._joint_names), dof.axis
+            name, axis = unused_name(dof.name, self._joint_names), dof.axis
             self._dofs[dof.joint.element, dof.number] = name, axis.mimic
             has_limit = axis.lower > -NO_LIMIT or axis.upper < NO_LIMIT
             turning = 'revolute' if has_limit else 'continuous'
@@ -203,7 +194,7 @@ class _RobotMaker:
                 # A screw joint slides too.
                 follows = Mimic(dof.joint.element, dof.number, dof.m_per_unit, 0.0, 0.0)
                 steps.append((
-                    _new_name(f'{name}{SLIDE_SUFFIX}', self._joint_names), 'prismatic',
+                    unused_name(f'{name}{SLIDE_SUFFIX}', self._joint_names), 'prismatic',
                     JointAxis(axis.xyz, mimic=follows)))
         return steps
 
@@ -216,7 +207,7 @@ class _RobotMaker:
         if joint is None or not steps:
             fixed = f'{name}_fixed' if joint is None else self._motion.joint_names[joint.element]
             self._add(name, link, UrdfJoint(
-                _new_name(fixed, self._joint_names), 'fixed', parent, transform))
+                unused_name(fixed, self._joint_names), 'fixed', parent, transform))
             return
         in_joint = relative_pose(
             self._scene.pose_of(joint.element), Pose(*tree.poses[frame].tolist()))
@@ -224,14 +215,14 @@ class _RobotMaker:
         origin = transform if is_at_joint else pose_product(transform, pose_inverse(in_joint))
         for number, (step, joint_type, axis) in enumerate(steps, 1):
             is_last = is_at_joint and number == len(steps)
-            child = name if is_last else _new_name(f'{step}{LINK_SUFFIX}', self._link_names)
+            child = name if is_last else unused_name(f'{step}{LINK_SUFFIX}', self._link_names)
             self._add(child, link if is_last else -1, UrdfJoint(
                 step, joint_type, parent, origin, axis,
                 self._mimic(step, axis.mimic, joint.element)))
             parent, origin = child, Pose()
         if not is_at_joint:
             self._add(name, link, UrdfJoint(
-                _new_name(f'{name}_fixed', self._joint_names), 'fixed', parent, in_joint))
+                unused_name(f'{name}_fixed', self._joint_names), 'fixed', parent, in_joint))
 
     def _add(self, name: str, element: int, joint: UrdfJoint) -> None:
         self._children[joint.parent].append(UrdfLink(name, element, joint))

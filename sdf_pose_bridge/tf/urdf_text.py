@@ -98,7 +98,7 @@ class _Writer:
     ) -> None:
         self._scene = scene
         self._robot = robot
-        self._finder = resource_finder(resource_paths, os.environ)
+        self._finder = resource_finder(resource_paths)
         self._has_capsules = has_capsules
         self._problems = Problems(scene.files)
         self._parts: defaultdict[int, list[int]] = defaultdict(list)

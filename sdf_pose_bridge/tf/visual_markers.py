@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import NamedTuple
 
@@ -149,7 +148,7 @@ def markers_from_text(
     options = request.tf_options
     return visual_markers_from_scene(
         scene, tf_tree_from_scene(scene, options), options.model,
-        resource_finder(request.resource_paths, os.environ))
+        resource_finder(request.resource_paths))
 
 
 def _forms_from_shape(

@@ -116,13 +116,6 @@ def more_poses_than_a_block():
     return poses
 
 
-@ONE_AND_MANY
-def test_several_blocks_are_the_same_as_one_by_one(one, many):
-    first, second = more_poses_than_a_block()
-    expected = rows(map(one, map(Pose._make, first), map(Pose._make, second)))
-    np.testing.assert_array_equal(many(first, second), expected)
-
-
 def test_the_product_of_one_pose_and_several_blocks():
     (first, *_), second = more_poses_than_a_block()
     expected = rows(pose_product(Pose(*first), Pose(*each)) for each in second)

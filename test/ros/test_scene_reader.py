@@ -16,8 +16,8 @@ from sdf_pose_bridge.errors import (
     SdfError,
 )
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.tf.frame_setting import frame_change_from_request
 from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadRequest, may_pass
+from sdf_pose_bridge.tf.loading import frame_change_from_request
 from sdf_pose_bridge.tf.visual_markers import markers_from_text
 
 LINK = """<link name="l"><pose>1 0 0 0 0 0</pose>

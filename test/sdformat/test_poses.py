@@ -81,8 +81,17 @@ def test_commas_do_not_separate_numbers():
 def test_comma_may_follow_each_number():
     numbers = pose_numbers_from_text('1.5,\n2 -3e-05, 0 0, 0,', RPY)
     assert numbers == [1.5, 2, -3e-5, 0, 0, 0]
-    ((_, doubt),) = pose_doubts(['1.5,\n2 -3e-05, 0 0, 0,'], np.array([numbers]), RPY)
-    assert 'commas' in doubt
+
+
+@pytest.mark.parametrize(('text', 'pose_format', 'message'), [
+    ('0 0 0 0 0 90', RPY, 'did you mean degrees="true"?'),
+    ('0 0 0 0 0 0 2', QUATERNION, 'is not of length 1'),
+    ('1.5,\n2 -3e-05, 0 0, 0,', RPY, 'the commas in the pose "1.5, 2 -3e-05, 0 0, 0," are'),
+])
+def test_pose_that_may_mean_another_is_doubted(text, pose_format, message):
+    numbers = np.array([pose_numbers_from_text(text, pose_format)])
+    ((_, doubt),) = pose_doubts([text], numbers, pose_format)
+    assert message in doubt
 
 
 @pytest.mark.parametrize('text', ['1 ' * 10_000, '1' * 2_000_000 + ' 0 0 0 0 0', '1' * 300])

@@ -282,18 +282,6 @@ def test_boolean(value, texts):
     assert [boolean_from_text(text) for text in texts] == [value] * len(texts)
 
 
-# Types
-
-@pytest.mark.parametrize(('text', 'value_type'), [
-    ('-1.5e3', ValueType.NUMBER), ('true', ValueType.NUMBER), ('+5x', ValueType.INTEGER),
-    ('false', ValueType.INTEGER), ('1 2 3 4', ValueType.THREE_NUMBERS), ('1', ValueType.BOOLEAN),
-    ('1 2', ValueType.TWO_NUMBERS), ('0 0.5 1', ValueType.COLOR), ('0 0.5 1 1', ValueType.COLOR),
-    ('any', ValueType.STRING),
-])
-def test_text_that_is_of_a_type(text, value_type):
-    assert is_of_type(text, value_type)
-
-
 # Choices
 
 def test_case_counts_in_a_choice_but_for_types_of_joints():

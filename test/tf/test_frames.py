@@ -8,35 +8,10 @@ import pytest
 from sdf_texts import joint, model_file, posed, world_file
 from tf_checks import only_tree_error, parents_of, pose_of, tree_of
 
-from sdf_pose_bridge import load_text, Pose
-from sdf_pose_bridge.tf.frames import Frame, Frames
-from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT
+from sdf_pose_bridge import load_text
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 OPTICAL = matrix_from_rpy(0, 0, 0, -np.pi / 2, 0, -np.pi / 2)
-
-
-@pytest.fixture
-def frames():
-    """Return the frames a without a parent, b in the root, and c in b."""
-    return Frames(
-        ['a', 'b'], np.array([1, 2], np.int32), np.array([NO_PARENT, ROOT_IS_PARENT], np.int32),
-        np.array([Pose(5), Pose(1)])).with_frames([Frame('c', 2, 1, Pose(1, 3))])
-
-
-def test_frames_follow_others(frames):
-    assert list(frames.ids) == ['a', 'b', 'c']
-    assert frames.owners.tolist() == [1, 2, 2]
-    assert frames.parents.tolist() == [NO_PARENT, ROOT_IS_PARENT, 1]
-    assert frames.poses[:, :2].tolist() == [[5, 0], [1, 0], [1, 3]]
-
-
-def test_no_frames_follow_others(frames):
-    assert frames.with_frames([]) == frames
-
-
-def test_transforms(frames):
-    assert frames.transforms().tolist() == [list(Pose()), list(Pose(1)), list(Pose(0, 3))]
 
 
 # Cameras

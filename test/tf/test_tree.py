@@ -338,13 +338,6 @@ def test_an_empty_file():
     assert tree.transforms.shape == (0, 7)
 
 
-def test_arrays_cannot_be_written():
-    tree = tree_of(model_file(LINK))
-    for array in (tree.poses, tree.parents, tree.transforms, tree.elements):
-        with pytest.raises(ValueError, match='read-only'):
-            array[0] = 1.0
-
-
 def test_options_do_not_change_the_scene():
     scene = sdf_pose_bridge.load_text(CELL)
     before = scene.poses.copy()

@@ -43,10 +43,10 @@ from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.values import boolean_from_text
 from sdf_pose_bridge.sdformat.xml_tree import (
     child_elements,
-    child_value,
     copy_of,
     described,
     first_child,
+    value_at,
     value_of,
     written_tag,
     XmlElement,
@@ -95,7 +95,7 @@ class IncludeExpansion:
 
     def _mark_missing(self, include: XmlElement) -> None:
         """Record the URI of an include that is not replaced, by the names that it may have."""
-        uri, name = child_value(include, 'uri') or 'no URI', child_value(include, 'name')
+        uri, name = value_at(include, 'uri') or 'no URI', value_at(include, 'name')
         is_merge = boolean_from_text(include.get('merge', 'false')) is not False
         names = [name] if name and not is_merge else ['', _name_from_uri(uri)]
         self._sources.set_origin(include, missing=dict.fromkeys(names, uri))
@@ -107,7 +107,7 @@ class IncludeExpansion:
             return
         if not is_valid_element(include, definition_of('include'), self._sources):
             return
-        place, uri = self._sources.place(include), child_value(include, 'uri')
+        place, uri = self._sources.place(include), value_at(include, 'uri')
         found = self._included_file(place, uri, files)
         if isinstance(found, str):
             self._report_missing(place, uri, found)

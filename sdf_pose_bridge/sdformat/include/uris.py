@@ -208,9 +208,10 @@ class ResourceFinder(NamedTuple):
 
 
 def resource_finder(
-    resource_paths: Iterable[str | os.PathLike[str]], environment: Mapping[str, str],
+    resource_paths: Iterable[str | os.PathLike[str]] = (),
+    environment: Mapping[str, str] = os.environ,
 ) -> ResourceFinder:
-    """Make a finder from directories to search first and an environment, as ``os.environ``."""
+    """Make a finder from directories to search first and an environment."""
     def paths(variable: str) -> list[str]:
         return [path for path in environment.get(variable, '').split(os.pathsep) if path]
 

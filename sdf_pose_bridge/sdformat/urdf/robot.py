@@ -12,12 +12,11 @@ error, but in a link the parser stops at the fault and keeps the part that it ha
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from itertools import count
 from typing import NamedTuple
 
 from sdf_pose_bridge.errors import DuplicateNameError, ElementInvalidError, ParsingError
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.names import JOINT_SUFFIX
+from sdf_pose_bridge.names import JOINT_SUFFIX, unused_name
 from sdf_pose_bridge.sdformat.inertials import MOMENTS
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import URDF_JOINT_TYPES
@@ -173,13 +172,13 @@ def robot_from_tree(root: XmlElement, sources: Sources, *, is_included: bool) ->
         used = {*links, *(joint.name for joint in parent_joints.values())}
         for child, joint in parent_joints.items():
             if joint.name in links:
-                new_name = _unused_name(f'{joint.name}{JOINT_SUFFIX}', used)
+                new_name = unused_name(f'{joint.name}{JOINT_SUFFIX}', used, '')
                 sources.warning(
                     joint.xml, f'the joint has the name of link "{joint.name}"; it is called '
                     f'"{new_name}" here', is_for_gazebo=True)
                 parent_joints[child] = joint._replace(name=new_name)
         if name in used:
-            name = _unused_name(f'{name}_model', used)
+            name = unused_name(f'{name}_model', used, '')
     return Robot(
         name, origin, list(in_order.values()), parent_joints, *_gazebo_elements_of(root))
 
@@ -202,13 +201,6 @@ def _gazebo_elements_of(
             elif child.tag == 'disableFixedJointLumping' and is_true(child):
                 kept_joints.setdefault(reference, 'revolute')
     return static, kept_joints, extensions
-
-
-def _unused_name(name: str, used: set[str]) -> str:
-    candidates = (f'{name}{number or ""}' for number in count())
-    new_name = next(each for each in candidates if each not in used)
-    used.add(new_name)
-    return new_name
 
 
 def _named_children(root: XmlElement, tag: str, errors: Sources) -> Mapping[str, XmlElement]:
