@@ -170,8 +170,7 @@ class PublishedMovingFrames:
         self.positions = positions
         # The last stamp of each moving transform.
         self._stamps_ns = np.full(len(moving.indices), NEVER)
-        self.is_waiting = np.zeros(len(moving.indices), np.bool_)
-        """Which of the moving transforms wait for the end of a period."""
+        self._newest_ns = NEVER
         self._tf = publishers.opened(TF)
         self.transforms_topic = _transforms_topic(len(moving.indices), 'moving')
         self._transforms = _records_of_transforms(tree, moving.indices)
@@ -198,15 +197,16 @@ class PublishedMovingFrames:
         :param ignore_stamps: whether it need not be newer.
         :return: those for which it is newer.
         """
-        if not ignore_stamps:
+        if stamp_ns <= self._newest_ns and not ignore_stamps:
             rows = rows[self._stamps_ns[rows] < stamp_ns]
+        self._newest_ns = max(self._newest_ns, stamp_ns)
         self._stamps_ns[rows] = stamp_ns
+        self._transforms.set_stamps(stamp_ns, rows)
         return rows
 
     def forget_stamps(self) -> None:
         """Accept any stamp next, after time has jumped back."""
-        self._stamps_ns[:] = NEVER
-        self.is_waiting[:] = False
+        self._stamps_ns[:] = self._newest_ns = NEVER
         self.positions.forget_stamps()
 
     def publish_all(self) -> bool:
@@ -217,28 +217,25 @@ class PublishedMovingFrames:
             node.
         """
         rows = np.flatnonzero(self.has_transform)
+        if not len(rows):
+            return False
         last_ns = self.positions.stamps_ns[self.frames.last_dofs[rows]]
         is_stamped = last_ns != NEVER
         # TF would reject other transforms with the same stamps.
         self._stamps_ns[rows[is_stamped]] = last_ns[is_stamped] + 1
-        self.publish_tf(rows, np.where(is_stamped, last_ns + 1, self._publishers.now_ns()))
-        return len(rows) > 0 and not is_stamped.any()
-
-    def publish_tf(
-        self, rows: NDArray[np.intp], stamps_ns: NDArray[np.int64] | None = None,
-    ) -> None:
-        """
-        Publish moving transforms in one message on ``/tf``.
-
-        :param rows: their indices, in ascending order; without any, nothing is published.
-        :param stamps_ns: their stamps in nanoseconds; by default those of :meth:`stamp`.
-        """
-        if not len(rows):
-            return
-        self.is_waiting[rows] = False
-        self._transforms.set_poses(self.frames.transforms(self.positions.values))
+        self._newest_ns = self._stamps_ns.max()
         self._transforms.set_stamps(
-            self._stamps_ns[rows] if stamps_ns is None else stamps_ns, rows)
+            np.where(is_stamped, last_ns + 1, self._publishers.now_ns()), rows)
+        self.publish_tf(rows)
+        return not is_stamped.any()
+
+    def publish_tf(self, rows: NDArray[np.intp]) -> None:
+        """
+        Publish moving transforms in one message on ``/tf``, with their stamps.
+
+        :param rows: their indices, in ascending order; at least one.
+        """
+        self._transforms.set_poses(self.frames.transforms(self.positions.values))
         self._tf.publish(self._transforms.tf_message(rows))
 
     def publish_topics(self, *, only_listeners: bool) -> None:
@@ -260,6 +257,8 @@ class PublishedMovingFrames:
         self._transforms.set_stamps(self._stamps(self.frames.last_dofs))
         for message in compress(self._transforms.messages(), self.has_transform):
             publisher.publish(message)
+        # Others may wait to be published on /tf.
+        self._transforms.set_stamps(self._stamps_ns)
 
     def _publish_poses(self, *, only_listeners: bool) -> None:
         publishers = [
