@@ -198,8 +198,9 @@ class JointPositions:
         """
         dofs, new, invalid = selection.dofs, values[selection.rows], []
         newest_ns = max((self._stamps_of_models_ns[each] for each in selection.models), default=0)
-        if (stamp_ns < newest_ns and not ignore_stamps) or not new.dot(new) <= LARGEST_POSITION:
-            # Some may have to stay, but rarely: values whose squares have a small sum are small.
+        is_late = stamp_ns < newest_ns and not ignore_stamps
+        # Most often all are taken. NaN is not at most anything.
+        if is_late or not np.abs(new).max(initial=0.0) <= LARGEST_POSITION:
             is_taken = np.abs(new) <= LARGEST_POSITION
             invalid = [self.names[dof] for dof in dofs[~is_taken].tolist()]
             if not ignore_stamps:
