@@ -34,11 +34,12 @@ from rclpy.task import Future
 from sdf_pose_bridge.ros.background import wake
 from sdf_pose_bridge.ros.cdr import NANOSECONDS
 from sdf_pose_bridge.ros.joint_state_topic import JointStateTopic, Meaning, Meanings, Message
-from sdf_pose_bridge.ros.log_lines import line_about_unreported_joints, MissingJoints
+from sdf_pose_bridge.ros.log_lines import line_about_unreported_joints
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
 from sdf_pose_bridge.ros.topic_names import JointStateTopics
 from sdf_pose_bridge.ros.wait_set import WaitSet
+from sdf_pose_bridge.tf.joint_positions import MissingJoints
 
 SUBSCRIPTIONS_AT_ONCE = 40
 """Number of subscriptions, made in some 20 milliseconds, before other callbacks run."""
@@ -160,14 +161,14 @@ class JointStates:
     @property
     def unreported(self) -> MissingJoints:
         """The joints that no message has named in time."""
+        if self._end_grace in self._due:
+            return MissingJoints()
         target = self._next_target
         positions = target.frames.positions
-        found = None if self._end_grace in self._due else positions.unreported()
-        if found is None:
-            return MissingJoints()
-        name = positions.names[found.first]
-        return MissingJoints(found.joint_count, name, [
-            topic.name for topic in target.topics if not positions.unknown([name], topic.model)])
+        found = positions.unreported()
+        return found._replace(topics=[
+            each.name for each in target.topics
+            if not positions.unknown([found.first], each.model)])
 
     def _open_missing_topics(self) -> None:
         """Make some subscriptions now, and leave the others to a task."""
@@ -339,7 +340,7 @@ class JointStates:
         topic.last_ns = self._now_ns
         topic.warn_about_invalid(positions.update(
             meaning.selection, message.positions, stamp_ns, ignore_stamps=ignores_stamps))
-        if self._has_reported_missing and positions.unreported() is None:
+        if self._has_reported_missing and not positions.unreported().number:
             self._has_reported_missing = False
             self._logger.info('all joints have been reported now')
         rows = self._meanings.rows(meaning)

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import compress
-from typing import NamedTuple
 
 import numpy as np
 
@@ -17,22 +16,13 @@ from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.frame_ids import FrameNames, FrameNaming
 from sdf_pose_bridge.tf.joint_motion import dofs_from_joint
+from sdf_pose_bridge.tf.joint_positions import MissingJoints
 from sdf_pose_bridge.tf.loaded_scene import LoadedScene
 from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.tree import elements_in_model, TfTree
 
 MOST_LINES = 20
 """Largest number of errors, warnings or names in the log; a generated file may have thousands."""
-
-
-class MissingJoints(NamedTuple):
-    """Joints that no message has named."""
-
-    number: int = 0
-    first: str = ''
-    """The name of the first one."""
-    topics: Sequence[str] = ()
-    """The full names of the topics on which messages can name it."""
 
 
 def lines_from_error(error: Exception) -> list[str]:

@@ -16,6 +16,7 @@ from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.task import Future
+from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
 from sdf_pose_bridge.errors import AddressError, SdfError
@@ -32,18 +33,18 @@ from sdf_pose_bridge.ros.log_lines import (
     lines_about_scene,
     lines_from_error,
     lines_from_warnings,
-    MissingJoints,
 )
 from sdf_pose_bridge.ros.parameter_services import add_setting_services
 from sdf_pose_bridge.ros.parameters import Settings, SettingsError
 from sdf_pose_bridge.ros.published_frames import frames_from_scene, PublishedFrames
-from sdf_pose_bridge.ros.publishers import TextPublisher
+from sdf_pose_bridge.ros.publishers import SwitchedPublisher, Topic
 from sdf_pose_bridge.ros.scene_reader import SceneReader
 from sdf_pose_bridge.ros.services import add_services, SERVICE_QOS, set_pose
 from sdf_pose_bridge.ros.topic_names import (
     check_number_of_topics,
     joint_state_topics_from_patterns,
 )
+from sdf_pose_bridge.tf.joint_positions import MissingJoints
 from sdf_pose_bridge.tf.loaded_scene import LoadedScene
 from sdf_pose_bridge.tf.loading import files_behind_error
 from sdf_pose_bridge.tf.lookup import PoseLookup
@@ -105,7 +106,7 @@ class SdfPoseBridge:
         # Imported here because it is slow to import, and everything else is more urgent.
         from sdf_pose_bridge.ros.visuals import VisualPublisher
         # With the quality of service that it has in robot_state_publisher.
-        self._robot_description = TextPublisher(node, 'robot_description')
+        self._robot_description = SwitchedPublisher(node, Topic('robot_description', String))
         self._publish_robot_description()
         self._visuals = VisualPublisher(node, self._reader, loaded)
         self._follow_switches()
@@ -175,8 +176,9 @@ class SdfPoseBridge:
         self._visuals.switch(on=self._settings.publish_visuals)
 
     def _publish_robot_description(self) -> None:
-        self._robot_description.publish(
-            self._loaded.description if self._settings.publish_robot_description else '')
+        text = self._loaded.description if self._settings.publish_robot_description else ''
+        self._robot_description.switch(on=bool(text))
+        self._robot_description.publish(String(data=text))
 
     def _report_success(self) -> None:
         loaded = self._loaded

@@ -77,13 +77,14 @@ class Selection(NamedTuple):
     """The numbers of their top-level models."""
 
 
-class UnreportedDofs(NamedTuple):
-    """Degrees of freedom without a known position."""
+class MissingJoints(NamedTuple):
+    """Joints that no message has named."""
 
-    joint_count: int
-    """The number of their joints."""
-    first: int
-    """The first of them."""
+    number: int = 0
+    first: str = ''
+    """The name of the first one."""
+    topics: Sequence[str] = ()
+    """The full names of the topics on which messages can name it."""
 
 
 class JointPositions:
@@ -147,12 +148,11 @@ class JointPositions:
         """The newest stamp of a message about the top-level model of each."""
         return np.array(self._stamps_of_models_ns, np.int64)[self._models]
 
-    def unreported(self) -> UnreportedDofs | None:
-        """Find the free degrees of freedom without a known position; None if there are none."""
-        dofs = np.flatnonzero(self._is_free & ~self.is_known)
-        if not len(dofs):
-            return None
-        return UnreportedDofs(len({self._joints[dof] for dof in dofs}), int(dofs[0]))
+    def unreported(self) -> MissingJoints:
+        """Find the free joints without a known position; the caller knows the topics."""
+        dofs = np.flatnonzero(self._is_free & ~self.is_known).tolist()
+        return MissingJoints(
+            len({self._joints[dof] for dof in dofs}), self.names[dofs[0]] if dofs else '')
 
     def selection(self, names: Sequence[str], model: str = '') -> Selection:
         """

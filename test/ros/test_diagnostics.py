@@ -10,7 +10,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 
 from sdf_pose_bridge.ros.diagnostics import Diagnostics, status_from_scene
 from sdf_pose_bridge.ros.given_parameters import settings_from_node
-from sdf_pose_bridge.ros.log_lines import MissingJoints
+from sdf_pose_bridge.tf.joint_positions import MissingJoints
 from sdf_pose_bridge.tf.loading import loaded_scene_from_request
 
 NOTHING_MISSING = MissingJoints()

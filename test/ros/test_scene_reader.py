@@ -55,7 +55,7 @@ def test_markers_and_changes_come_from_it_too(reader, request_of_file):
     fingerprint = fingerprint_of_scene(loaded.scene)
     (marker,), _ = reader.result(
         loaded.request, markers_from_text, loaded.text, loaded.path, loaded.request, fingerprint)
-    assert marker.form.type == 'CUBE'
+    assert marker.type == 'CUBE'
     change = reader.result(loaded.request, *change_of(loaded))
     assert '+<sdf' in change.diff or '<pose>2 0 0 0 0 0' in change.diff
     assert change.file.new_text.decode() == model_file(LINK).replace('1 0 0', '2 0 0')

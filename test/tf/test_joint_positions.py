@@ -82,11 +82,11 @@ def test_names_inside_one_model_are_not_those_of_others():
 
 def test_a_joint_with_several_degrees_of_freedom_is_missing_once():
     positions = positions_of(model_file(LINKS + joint(ENDS, 'j', 'ball')))
-    assert positions.unreported() == (1, 0)
+    assert positions.unreported() == (1, 'j_yaw', ())
     positions.update(positions.selection(positions.names[:1]), np.zeros(1))
-    assert positions.unreported() == (1, 1)
+    assert positions.unreported() == (1, 'j_pitch', ())
     positions.update(positions.selection(positions.names), np.zeros(3))
-    assert positions.unreported() is None
+    assert positions.unreported().number == 0
 
 
 @pytest.mark.parametrize('text', [
