@@ -17,13 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.node import Node
-from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.qos import QoSPolicyKind, QoSProfile, ReliabilityPolicy
+from rclpy.qos_overriding_options import QoSOverridingOptions
 from sensor_msgs.msg import JointState
 
 from sdf_pose_bridge.ros.cdr import joint_state_from_bytes, SerializedNames
 from sdf_pose_bridge.ros.log_lines import names_in_line
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
-from sdf_pose_bridge.ros.qos_overrides import SUBSCRIPTION_OVERRIDES
 from sdf_pose_bridge.ros.wait_set import NoExecutor, take_message
 from sdf_pose_bridge.tf.joint_positions import LARGEST_POSITION, Selection
 
@@ -141,7 +141,9 @@ class JointStateTopic:
             QoSProfile(depth=MOST_WAITING, reliability=ReliabilityPolicy.BEST_EFFORT),
             callback_group=NoExecutor(), raw=True,
             event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
-            qos_overriding_options=SUBSCRIPTION_OVERRIDES)
+            # Without the depth, which the node chooses.
+            qos_overriding_options=QoSOverridingOptions((
+                QoSPolicyKind.RELIABILITY, QoSPolicyKind.DURABILITY)))
         self.name: str = self.subscription.topic_name
         """The full name of the topic."""
 

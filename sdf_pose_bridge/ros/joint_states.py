@@ -281,13 +281,11 @@ class JointStates:
     def _end_period(self) -> None:
         """Publish what has waited; without any, publish the next message at once."""
         rows, self._waiting = self._waiting, _NO_ROWS
+        self._end_periods()
         if len(rows):
             self._publish(rows)
-            silent_since = self._now_ns - max(2.0 * self._target.period_ns, SILENCE_NS)
-            self._begin_period([
-                each for each in self._target.topics if each.last_ns < silent_since])
-        else:
-            self._end_periods()
+            begin_ns = self._now_ns - max(2.0 * self._target.period_ns, SILENCE_NS)
+            self._begin_period([each for each in self._target.topics if each.last_ns < begin_ns])
 
     def _end_periods(self) -> None:
         self._period_ends_ns = math.inf

@@ -25,7 +25,7 @@ from sdf_pose_bridge.ros.background import CoroutineLock, PollingThread, run_in_
 from sdf_pose_bridge.ros.cdr import NANOSECONDS
 from sdf_pose_bridge.ros.diagnostics import Diagnostics, PERIOD_S
 from sdf_pose_bridge.ros.file_follower import FileFollower
-from sdf_pose_bridge.ros.given_parameters import changed_settings
+from sdf_pose_bridge.ros.given_parameters import add_setting_services, changed_settings
 from sdf_pose_bridge.ros.log_lines import (
     line_about_frames,
     line_about_joints_at_rest,
@@ -34,7 +34,6 @@ from sdf_pose_bridge.ros.log_lines import (
     lines_from_error,
     lines_from_warnings,
 )
-from sdf_pose_bridge.ros.parameter_services import add_setting_services
 from sdf_pose_bridge.ros.parameters import Settings, SettingsError
 from sdf_pose_bridge.ros.published_frames import frames_from_scene, PublishedFrames
 from sdf_pose_bridge.ros.publishers import SwitchedPublisher, Topic
@@ -60,7 +59,6 @@ class SdfPoseBridge:
 
     :param node: the node, with declared parameters and an executor.
     :param frames: the frames of the scene, which are published.
-    :param reader: reads files.
     """
 
     def __init__(
@@ -73,7 +71,9 @@ class SdfPoseBridge:
         self._settings = settings
         self._loaded = loaded
         self._reader = reader
-        self._diagnostics = Diagnostics(node, self._unreported_joints)
+        self._joint_states: JointStates | None = None
+        self._diagnostics = Diagnostics(
+            node, lambda: self._joint_states.unreported if self._joint_states else MissingJoints())
         self._has_told_of_joints = False
         self._follower = FileFollower(loaded)
         # All callbacks that change the published scene run one after the other.
@@ -87,7 +87,6 @@ class SdfPoseBridge:
             1.0, self._publish_again, callback_group=MutuallyExclusiveCallbackGroup(),
             clock=steady_clock, autostart=False)
         self._publish_again_at(settings.publish_rate)
-        self._joint_states: JointStates | None = None
         self._follow_joints()
         add_services(node, self._current_lookup)
         node.create_service(
@@ -166,10 +165,6 @@ class SdfPoseBridge:
         """Wait until the messages of joint states so far are processed."""
         if self._joint_states is not None:
             await self._joint_states.catch_up()
-
-    def _unreported_joints(self) -> MissingJoints:
-        return MissingJoints() if self._joint_states is None else (
-            self._joint_states.unreported)
 
     def _follow_switches(self) -> None:
         self._diagnostics.switch(on=self._settings.publish_diagnostics)
@@ -277,8 +272,7 @@ class SdfPoseBridge:
 
     async def _apply(self, settings: Settings, loaded: LoadedScene) -> None:
         before, self._settings = self._settings, settings
-        if settings.publish_rate != before.publish_rate:
-            self._publish_again_at(settings.publish_rate)
+        self._publish_again_at(settings.publish_rate)
         if loaded is not self._loaded or (
                 settings.pose_topics, settings.publish_transforms) != (
                     before.pose_topics, before.publish_transforms):

@@ -11,9 +11,9 @@ from rclpy.event_handler import PublisherEventCallbacks, QoSPublisherMatchedInfo
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.qos_overriding_options import QoSOverridingOptions
 
 from sdf_pose_bridge.ros.background import run_other_callbacks
-from sdf_pose_bridge.ros.qos_overrides import PUBLISHER_OVERRIDES
 
 # Number of messages or publishers, made in a few milliseconds, before other callbacks run.
 MESSAGES_AT_ONCE = 500
@@ -115,7 +115,8 @@ def new_publisher(
     # callback, a thousand of them in a large scene.
     return node.create_publisher(
         topic.message_type, topic.name, quality,
-        qos_overriding_options=PUBLISHER_OVERRIDES if topic.is_overridable else None,
+        qos_overriding_options=QoSOverridingOptions.with_default_policies()
+        if topic.is_overridable else None,
         event_callbacks=PublisherEventCallbacks(matched=matched, use_default_callbacks=False))
 
 

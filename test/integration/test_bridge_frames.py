@@ -148,15 +148,6 @@ def test_the_type_of_tf_static_is_the_one_on_every_ros_machine(late_listener):
     assert str(publisher.topic_type_hash) == TF_MESSAGE_HASH
 
 
-@pytest.mark.parametrize('topic', [
-    '/tf_static', '/sdf_pose_bridge/transforms', '/sdf_pose_bridge/poses/robot/base'])
-def test_topics_are_reliable_and_latched(late_listener, topic):
-    late_listener.wait_for_keys(late_listener.poses, TOPICS.values())
-    (publisher,) = late_listener.node.get_publishers_info_by_topic(topic)
-    assert publisher.qos_profile.reliability.name == 'RELIABLE'
-    assert publisher.qos_profile.durability.name == 'TRANSIENT_LOCAL'
-
-
 def test_models_that_are_not_anchored_still_have_poses(start_bridge, start_listener, sdf_file):
     bridge = start_bridge(
         '--ros-args', '-p', f'sdf_file:={sdf_file}', '-p', 'anchor_models:=static')

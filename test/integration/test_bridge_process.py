@@ -96,15 +96,6 @@ def test_what_prevents_the_start_is_one_line(start_bridge, arguments, text):
     assert text in line
 
 
-def test_an_unknown_parameter_is_a_warning(start_bridge, write_file):
-    bridge = start_bridge(
-        '--ros-args', '-p', f'sdf_file:={write_file(GOOD)}', '-p', 'frame_prefx:=r1/')
-    line = bridge.wait_for_line('there is no parameter "frame_prefx"')
-    assert line.startswith('[WARN]')
-    assert line.endswith('did you mean "frame_prefix"?')
-    bridge.wait_until_started()
-
-
 def test_a_misspelt_file_parameter_is_named_before_the_missing_one(start_bridge):
     bridge = start_bridge('--ros-args', '-p', 'sdf_fil:=a.sdf')
     assert bridge.wait_for_end() == 1

@@ -12,7 +12,7 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import TransformStamped
 from rclpy.parameter import Parameter
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
@@ -160,13 +160,6 @@ def make_slow_arm(following):
         following.connect()
         return following
     return start
-
-
-def test_publishers_that_are_best_effort_are_heard(following):
-    following.start()
-    subscription, = following.node.subscriptions
-    assert subscription.topic_name == '/joint_states'
-    assert subscription.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
 
 
 def test_a_transform_is_published_if_it_is_newer_than_the_last_one(arm):

@@ -10,12 +10,20 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from geometry_msgs.msg import PoseStamped, TransformStamped
-from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.qos import (
+    DurabilityPolicy,
+    qos_profile_sensor_data,
+    QoSProfile,
+    ReliabilityPolicy,
+)
 from tf_checks import tree_of
 
 from sdf_pose_bridge import load_text
+from sdf_pose_bridge.ros.joint_states import JointStates
+from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
+from sdf_pose_bridge.ros.topic_names import JointStateTopics
 from sdf_pose_bridge.tf.joint_positions import JointPositions, UnreportedJoints
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
@@ -175,14 +183,42 @@ def test_what_a_joint_without_a_position_moves_is_not_published(node, poses):
     assert [each.child_frame_id for each in transforms].count('upper') == 1
 
 
-def test_tf_has_the_quality_of_service_of_tf2_ros(node):
-    frames_of_arm(Publishers(node))
+def qualities(node):
+    """Publish the frames of an arm; return the quality of service of each topic."""
+    frames = frames_of_arm(Publishers(node))
+    states = JointStates(
+        node, frames.moving, JointStateTopics({'joint_states': ''}),
+        Settings({'publish_frequency': 0.0, 'ignore_timestamp': False}))
     found = {
-        publisher.topic_name: publisher.qos_profile for publisher in node.publishers
-        if publisher.topic_name.startswith('/tf')}
-    assert {name: (quality.depth, quality.durability) for name, quality in found.items()} == {
-        '/tf': (100, DurabilityPolicy.VOLATILE),
-        '/tf_static': (1, DurabilityPolicy.TRANSIENT_LOCAL)}
+        each.topic_name: each.qos_profile for each in [*node.publishers, *node.subscriptions]}
+    states.end()
+    return found
+
+
+def test_policies_are_those_of_tf2_ros_and_declared(make_node):
+    node = make_node('bridge')
+    found = qualities(node)
+    assert (found['/tf'].depth, found['/tf'].durability) == (100, DurabilityPolicy.VOLATILE)
+    assert (found['/tf_static'].depth, found['/tf_static'].durability) == (
+        1, DurabilityPolicy.TRANSIENT_LOCAL)
+    assert found['/joint_states'].reliability is ReliabilityPolicy.BEST_EFFORT
+    assert node.get_parameter('qos_overrides./tf.publisher.depth').value == 100
+    assert node.get_parameter(
+        'qos_overrides./joint_states.subscription.reliability').value == 'best_effort'
+
+
+def test_policies_are_overridden_under_the_remapped_name(make_node):
+    node = make_node(
+        'bridge', '-r', '/tf:=/r1/tf', '-p', 'qos_overrides./r1/tf.publisher.depth:=7',
+        '-p', 'qos_overrides./tf_static.publisher.reliability:=best_effort',
+        '-p', 'qos_overrides./joint_states.subscription.reliability:=reliable',
+        '-p', 'qos_overrides./joint_states.subscription.durability:=transient_local')
+    found = qualities(node)
+    assert found['/r1/tf'].depth == 7
+    assert found['/tf_static'].reliability is ReliabilityPolicy.BEST_EFFORT
+    assert found['/joint_states'].reliability is ReliabilityPolicy.RELIABLE
+    assert found['/joint_states'].durability is DurabilityPolicy.TRANSIENT_LOCAL
+    assert qos_profile_sensor_data.reliability is ReliabilityPolicy.BEST_EFFORT, 'for others'
 
 
 def test_many_topics_are_made_between_other_callbacks(publish, node):

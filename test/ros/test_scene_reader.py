@@ -20,6 +20,9 @@ from sdf_pose_bridge.tf.frame_setting import frame_change_from_request
 from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadRequest, may_pass
 from sdf_pose_bridge.tf.visual_markers import markers_from_text
 
+CRASH = """import faulthandler, signal
+faulthandler.disable()
+signal.raise_signal(signal.SIGSEGV)"""
 LINK = """<link name="l"><pose>1 0 0 0 0 0</pose>
   <visual name="v"><geometry><box/></geometry></visual></link>"""
 
@@ -99,7 +102,7 @@ def test_a_process_that_is_killed_is_an_error_that_passes(reader, request_of_fil
 
 def test_a_process_that_crashes_is_an_error_that_stays(reader, request_of_file):
     with pytest.raises(FileReadError, match='has ended by signal 11') as caught:
-        reader.result(request_of_file, signal.raise_signal, signal.SIGSEGV)
+        reader.result(request_of_file, exec, CRASH, {})
     assert not may_pass(caught.value)
 
 
