@@ -32,7 +32,6 @@ from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.limits import MissingInclude
 from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.frame_ids import FrameNames
-from sdf_pose_bridge.tf.joint_positions import UnreportedJoints
 from sdf_pose_bridge.tf.tree import TfOptions
 
 TYPE = Parameter.Type
@@ -269,21 +268,6 @@ def test_a_value_with_the_same_meaning_is_converted(type_, value, wanted, conver
     found = parameter_with_type(Parameter('p', type_, value), wanted)
     assert (found.name, found.type_, found.value) == ('p', wanted, converted)
     assert type(found.value) is type(converted)
-
-
-def test_what_is_read_has_all_that_a_load_needs():
-    settings = settings_from_values({
-        'sdf_file': 'cell.sdf', 'kinds': ['auto'], 'frame_prefix': 'r/',
-        'unreported_joints': 'zero', 'use_joint_states': True})
-    request = settings.load_request
-    assert request.source == 'cell.sdf'
-    assert request.tf_options == TfOptions(kinds=None, frame_prefix='r/', use_joint_states=True)
-    assert request.unreported_joints is UnreportedJoints.ZERO
-
-
-@pytest.mark.parametrize('name', DECLARATIONS)
-def test_the_default_is_a_value_that_is_allowed(name):
-    DECLARATIONS[name].convert(DECLARATIONS[name].default)
 
 
 # Services
