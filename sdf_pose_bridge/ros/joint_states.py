@@ -257,7 +257,7 @@ class JointStates:
         if self._target.frames is not before.frames:
             self._target.frames.positions.take_over(before.frames.positions)
             self._start_frames()
-        self._end_periods()
+        self._end_period()
 
     def _start_frames(self) -> None:
         self._meanings = Meanings(self._target.frames)

@@ -233,9 +233,9 @@ class PublishedMovingFrames:
                 self._transforms.set_poses(self.frames.transforms(self.positions.values))
                 self._transforms.set_stamps(self._stamps(self.frames.last_dofs))
                 messages = self._transforms.messages()
-                _publish(publishers * len(messages), messages, self.has_transform)
-                # Others may wait to be published on /tf.
+                # They may wait to be published on /tf.
                 self._transforms.set_stamps(self._stamps_ns)
+                _publish(publishers * len(messages), messages, self.has_transform)
             publishers = self._wanted(self._posed_topics, only_listeners=only_listeners)
             if any(publishers):
                 frames, rows = self.frames, self._posed_rows

@@ -16,6 +16,7 @@ from rclpy.qos import (
     QoSProfile,
     ReliabilityPolicy,
 )
+from tf2_msgs.msg import TFMessage
 from tf_checks import tree_of
 
 from sdf_pose_bridge import load_text
@@ -166,6 +167,19 @@ def test_poses_in_a_frame_that_moves_have_the_stamp_of_its_joints(node, poses):
     wait_until(node, lambda: 'base' in dict(poses), poses)
     stamp = dict(poses)['base']
     assert (stamp.sec, stamp.nanosec) == (5, 6)
+
+
+def test_what_waits_for_tf_keeps_its_stamp_while_topics_are_published(node, poses):
+    frames, found = frames_of_arm(Publishers(node)), []
+    report_position(frames, 5_000_000_006)
+    node.create_subscription(TFMessage, '/tf', found.append, 10)
+    rows = frames.moving.stamp(np.array([0]), 7_000_000_008)
+    publish_topics(node, frames)
+    wait_until(node, lambda: 'upper' in dict(poses), poses)
+    frames.moving.publish_tf(rows)
+    wait_until(node, lambda: found, found)
+    stamp = found[0].transforms[0].header.stamp
+    assert (stamp.sec, stamp.nanosec) == (7, 8)
 
 
 def test_what_a_joint_without_a_position_moves_is_not_published(node, poses):
