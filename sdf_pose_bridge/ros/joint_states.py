@@ -108,7 +108,7 @@ class JointStates:
         self._is_simulated = self._has_jumped = False
         self._has_moved = self._has_reported_missing = False
         self._start_frames()
-        self._end_periods()
+        self._end_period()
         self.follow(frames, topics, settings)
         self._thread = threading.Thread(target=self._run, name='joint states', daemon=True)
         self._thread.start()
@@ -273,23 +273,13 @@ class JointStates:
     def _is_in_period(self) -> bool:
         return self._period_ends_ns < math.inf
 
-    def _begin_period(self, awaited: Sequence[JointStateTopic]) -> None:
-        """Begin a period, for whose end the messages of all but some topics wait."""
-        self._period_ends_ns = self._now_ns + self._target.period_ns
-        self._awaited = awaited
-
     def _end_period(self) -> None:
-        """Publish what has waited; without any, publish the next message at once."""
+        """Publish what has waited, if anything has; otherwise publish the next message at once."""
         rows, self._waiting = self._waiting, _NO_ROWS
-        self._end_periods()
+        self._period_ends_ns, self._awaited = math.inf, self._target.topics
         if len(rows):
-            self._publish(rows)
-            begin_ns = self._now_ns - max(2.0 * self._target.period_ns, SILENCE_NS)
-            self._begin_period([each for each in self._target.topics if each.last_ns < begin_ns])
-
-    def _end_periods(self) -> None:
-        self._period_ends_ns = math.inf
-        self._awaited = self._target.topics
+            silent_ns = self._now_ns - max(2.0 * self._target.period_ns, SILENCE_NS)
+            self._publish(rows, [each for each in self._awaited if each.last_ns < silent_ns])
 
     # Messages
 
@@ -352,23 +342,29 @@ class JointStates:
 
     # Publication
 
-    def _publish(self, rows: NDArray[np.intp]) -> None:
+    def _publish(
+        self, rows: NDArray[np.intp], awaited: Sequence[JointStateTopic] = (),
+    ) -> None:
+        """
+        Publish moving transforms; with a highest rate, a period begins if there is none.
+
+        :param awaited: the topics whose messages do not wait for the end of this period.
+        """
         self._target.frames.publish_tf(rows)
         now = time.monotonic()
         self._due[self._publish_to_listeners] = max(self._topics_due, now)
         self._due[self._publish_at_rest] = now + _REST_S
+        # Simulated time that has not begun would never end a period.
+        if self._target.period_ns and self._now_ns and not self._is_in_period:
+            self._period_ends_ns = self._now_ns + self._target.period_ns
+            self._awaited = awaited
 
     def _publish_at_once(self, rows: NDArray[np.intp]) -> None:
-        """Publish moving transforms; with a highest rate, a period begins if there is none."""
-        if not len(rows):
-            return
-        self._publish(rows)
-        if self._is_in_period:
+        if len(rows) and self._is_in_period:
             self._waiting = np.setdiff1d(self._waiting, rows)
             self._awaited = [each for each in self._awaited if each.last_ns < self._now_ns]
-        # Simulated time that has not begun would never end a period.
-        elif self._target.period_ns and self._now_ns:
-            self._begin_period([])
+        if len(rows):
+            self._publish(rows)
 
     def _publish_all(self) -> None:
         """Publish all frames on ``/tf``; repeatedly as long as no message has come."""

@@ -35,24 +35,23 @@ class VisualPublisher:
         self._node = node
         self._reader = reader
         self._loaded = loaded
-        self._is_up_to_date = False
+        self._shown: LoadedScene | None = None
         self._publisher = SwitchedPublisher(
             node, Topic('~/visuals', MarkerArray), lambda _: self._publish_to_listeners())
 
     def switch(self, *, on: bool) -> None:
         """Start or stop publishing."""
         self._publisher.switch(on=on)
-        self._is_up_to_date = self._is_up_to_date and on
+        self._shown = self._shown if on else None
 
     def replace(self, loaded: LoadedScene) -> None:
         """Show another scene from now on."""
         self._loaded = loaded
-        self._is_up_to_date = False
         self._publish_to_listeners()
 
     def _publish_to_listeners(self) -> None:
-        if not self._is_up_to_date and self._publisher.has_listeners():
-            self._is_up_to_date = True
+        if self._shown is not self._loaded and self._publisher.has_listeners():
+            self._shown = self._loaded
             self._node.executor.create_task(self._publish, self._loaded)
 
     async def _publish(self, loaded: LoadedScene) -> None:
