@@ -121,8 +121,7 @@ class JointBroadcaster:
 def transforms_of_100_joints() -> Iterator[tuple[Function, Function | None]]:
     from rclpy.serialization import serialize_message
 
-    from sdf_pose_bridge.ros.joint_names import Meanings
-    from sdf_pose_bridge.ros.joint_state_topic import JointStateTopic
+    from sdf_pose_bridge.ros.joint_state_topic import JointStateTopic, Meanings
     from sdf_pose_bridge.ros.published_frames import PublishedFrames
     from sdf_pose_bridge.ros.publishers import Publishers
     with node() as ros:
@@ -142,9 +141,10 @@ def transforms_of_100_joints() -> Iterator[tuple[Function, Function | None]]:
         def publish() -> None:
             message = topic.read(next(serialized), meanings)
             assert message is not None
-            meaning, values, stamp_ns = message
-            positions.update(meaning.selection, values, stamp_ns, ignore_stamps=True)
-            frames.publish_tf(frames.stamp(meanings.rows(meaning), stamp_ns))
+            positions.update(
+                message.meaning.selection, message.positions, message.stamp_ns,
+                ignore_stamps=True)
+            frames.publish_tf(frames.stamp(meanings.rows(message.meaning), message.stamp_ns))
 
         yield publish, lambda: broadcaster.take(next(messages))
 

@@ -188,15 +188,6 @@ def test_a_signal_to_the_group_is_not_for_it(busy_pid, number):
 # Processes that are killed or stopped
 
 
-def test_a_process_that_is_killed_while_it_is_busy_is_an_error_that_passes(busy_pid):
-    process, pid, future = busy_pid(AMPLE, SPIN)
-    os.kill(pid, signal.SIGKILL)
-    error = raised_by(future)
-    assert str(error) == 'the process that reads files has ended by signal 9'
-    assert error.may_pass
-    assert process.call(AMPLE, pow, 2, 2) == 4
-
-
 @pytest.mark.parametrize(('code', 'message'), [
     ('import signal; signal.raise_signal(signal.SIGUSR1)', 'has ended by signal 10'),
     ('import os; os._exit(3)', 'has ended with exit code 3'),

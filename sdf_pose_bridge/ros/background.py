@@ -1,6 +1,10 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Run work beside the callbacks of a node, in threads or between the callbacks."""
+"""
+Run work beside the callbacks of a node, in threads or between the callbacks.
+
+The node of each function and class has an executor.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +33,6 @@ def run_in_thread(node: Node, function: Callable[[], object]) -> Future:
     """
     Run a function in a separate thread, which does not keep the process from ending.
 
-    :param node: a node with an executor.
     :param function: the function; it must not use the node.
     :return: a future for its result or exception, which a coroutine on the executor can await.
     :raises MemoryError: if no thread can be started.
@@ -74,22 +77,14 @@ def wake(executor: Executor | None) -> None:
 
 
 async def run_other_callbacks(node: Node) -> None:
-    """
-    Let the executor run other callbacks before it resumes the coroutine that awaits this.
-
-    :param node: a node with an executor.
-    """
+    """Let the executor run other callbacks before it resumes the coroutine that awaits this."""
     # The task wakes the executor: in some releases of rclpy it does not wake up by itself to
     # resume a coroutine when the awaited task has ended.
     await node.executor.create_task(node.executor.wake)
 
 
 class CoroutineLock:
-    """
-    A lock for coroutines on the executor of a node, each of which holds it by ``async with``.
-
-    :param node: a node with an executor.
-    """
+    """A lock for coroutines on the executor of a node; ``async with`` holds it."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -115,7 +110,6 @@ class PollingThread:
     A timer of the node would wake its executor for each evaluation, which takes much more
     processor time.
 
-    :param node: a node with an executor.
     :param group: callback group of the callback.
     :param condition: is evaluated every ``PERIOD_S``, except while the callback runs.
     """

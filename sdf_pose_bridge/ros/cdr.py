@@ -72,7 +72,7 @@ class StampedRecords:
         bounds = np.cumsum([0, *map(len, records)])
         self._bounds: list[int] = bounds.tolist()
         # Indices in the buffer as one of integers, and as one of numbers.
-        self._stamps = bounds[:-1, np.newaxis] // 4 + np.arange(2)
+        self._stamps = bounds[:-1] // 4
         self._numbers = (bounds[1:] - _NUMBERS)[:, np.newaxis] // 8 + np.arange(7)
         self.set_poses(poses)
 
@@ -96,9 +96,8 @@ class StampedRecords:
         :param stamps_ns: a stamp in nanoseconds for each record, or one for all.
         :param rows: the indices of the records that get them.
         """
-        stamps = np.empty((*np.shape(stamps_ns), 2), np.int64)
-        np.divmod(stamps_ns, NANOSECONDS, stamps[..., 0], stamps[..., 1])
-        self._buffer.view('<i4')[self._stamps[rows]] = stamps
+        integers, seconds = self._buffer.view('<i4'), self._stamps[rows]
+        integers[seconds], integers[seconds + 1] = divmod(stamps_ns, NANOSECONDS)
 
     def messages(self) -> list[bytes]:
         """Return a geometry_msgs/TransformStamped or PoseStamped for each record."""
@@ -109,19 +108,22 @@ class StampedRecords:
         """
         Return one tf2_msgs/TFMessage of records that are transforms.
 
-        :param rows: their indices; all by default.
+        :param rows: their indices in ascending order; all by default.
         """
-        chosen = range(len(self)) if rows is None else rows.tolist()
-        data = self._buffer.data
-        records = [data[self._bounds[row]:self._bounds[row + 1]] for row in chosen]
-        parts: list[bytes | memoryview] = [_BEGIN, struct.pack('<I', len(records)), *records]
-        if records:
-            # Behind the length of the sequence, the first record is not at a multiple of eight,
-            # so that another number of bytes aligns its numbers.
-            size = self._sizes_before_numbers[chosen[0]]
-            padding = bytes(-(_LENGTH + size) % 8)
-            parts[2:3] = records[0][:size], padding, records[0][-_NUMBERS:]
-        return b''.join(parts)
+        rows = np.arange(len(self)) if rows is None else rows
+        begin = _BEGIN + struct.pack('<I', len(rows))
+        if not len(rows):
+            return begin
+        data, bounds, first, last = self._buffer.data, self._bounds, rows[0], rows[-1]
+        # Behind the length of the sequence, the first record is not at a multiple of eight, so
+        # that another number of bytes aligns its numbers.
+        size, end = self._sizes_before_numbers[first], bounds[first + 1]
+        are_adjacent = last - first + 1 == len(rows)
+        others = [data[end:bounds[last + 1]]] if are_adjacent else [
+            data[bounds[row]:bounds[row + 1]] for row in rows[1:].tolist()]
+        return b''.join([
+            begin, data[bounds[first]:bounds[first] + size], bytes(-(_LENGTH + size) % 8),
+            data[end - _NUMBERS:end], *others])
 
 
 class SerializedNames(NamedTuple):
@@ -134,14 +136,15 @@ class SerializedNames(NamedTuple):
 
 def joint_state_from_bytes(
     data: bytes, known: SerializedNames | None = None,
-) -> tuple[tuple[int, int], SerializedNames, NDArray[np.float64]]:
+) -> tuple[int, SerializedNames, NDArray[np.float64]]:
     """
     Read a message.
 
     :param data: the serialized message.
     :param known: names of an earlier message; they are not read again if they are the same.
-    :return: seconds and nanoseconds of its stamp, its names and its positions.
-    :raises ValueError: if it is not a whole message in plain CDR, or if it is too large.
+    :return: its stamp in nanoseconds, its names, and a position for each name.
+    :raises ValueError: if it is not a whole message in plain CDR, if it is too large, or if its
+        fields contradict one another.
     """
     if len(data) > MOST_BYTES:
         msg = f'it has {len(data)} bytes, more than {MOST_BYTES}'
@@ -150,31 +153,42 @@ def joint_state_from_bytes(
         msg = f'it begins with 0x{data[:2].hex()}, which is not plain CDR'
         raise ValueError(msg)
     stamp_and_length, length_format, number = _FORMATS[data[:2]]
-
-    def length_at(place: int) -> tuple[int, int]:
-        """Return a length, and the place behind it."""
-        place += -place % 4
-        return length_format.unpack_from(data, place)[0], place + 4
-
     try:
         sec, nanosec, length = stamp_and_length.unpack_from(data, _START)
         begin = _START + 12 + length
         begin += -begin % 4
-        if known is not None and data.startswith(known.data, begin):
-            names, end = known, begin + len(known.data)
-        else:
-            count, end = length_at(begin)
-            read = []
-            for _ in range(count):
-                length, place = length_at(end)
-                end = place + length
-                # The length counts a zero at the end.
-                read.append(data[place:end - 1].decode(errors='replace'))
-            names = SerializedNames(tuple(read), data[begin:end])
-        count, place = length_at(end)
+        names = known
+        if names is None or not data.startswith(names.data, begin):
+            names = _names_from_bytes(data, begin, length_format)
+        place = begin + len(names.data)
+        place += -place % 4
+        count, = length_format.unpack_from(data, place)
+        place += 4
         # Numbers are aligned to eight bytes, counted from the beginning of the fields.
         positions = np.frombuffer(data, number, count, place + (_START - place) % 8)
     except (struct.error, ValueError) as error:
         msg = f'it ends too early: {error}'
         raise ValueError(msg) from error
-    return (sec, nanosec), names, positions
+    if count != len(names.names):
+        msg = (
+            f'it has {len(names.names)} names and {count} positions, and each name must have a '
+            'position')
+        raise ValueError(msg)
+    if sec < 0 or nanosec >= NANOSECONDS:
+        msg = (
+            f'it has the stamp sec={sec} nanosec={nanosec}, and sec must not be negative and '
+            f'nanosec must be less than {NANOSECONDS}')
+        raise ValueError(msg)
+    return sec * NANOSECONDS + nanosec, names, positions
+
+
+def _names_from_bytes(data: bytes, begin: int, length_format: struct.Struct) -> SerializedNames:
+    count, = length_format.unpack_from(data, begin)
+    names, end = [], begin + 4
+    for _ in range(count):
+        place = end + -end % 4
+        length, = length_format.unpack_from(data, place)
+        end = place + 4 + length
+        # The length counts a zero at the end.
+        names.append(data[place + 4:end - 1].decode(errors='replace'))
+    return SerializedNames(tuple(names), data[begin:end])

@@ -13,14 +13,13 @@ import datetime
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
-from rclpy.publisher import Publisher
 
 from sdf_pose_bridge.ros.log_lines import (
     count_in_words,
     line_about_unreported_joints,
     MissingJoints,
 )
-from sdf_pose_bridge.ros.publishers import new_publisher, Topic
+from sdf_pose_bridge.ros.publishers import SwitchedPublisher, Topic
 from sdf_pose_bridge.tf.loaded_scene import LoadedScene
 
 PERIOD_S = 2.0
@@ -43,20 +42,16 @@ class Diagnostics:
 
     def __init__(self, node: Node, unreported_joints: Callable[[], MissingJoints]) -> None:
         self._node = node
-        self._publisher: Publisher | None = None
+        self._publisher = SwitchedPublisher(
+            node, Topic('/diagnostics', DiagnosticArray, depth=10, is_latched=False))
         self._unreported_joints = unreported_joints
         self._last: tuple[LoadedScene, Sequence[str]] | None = None
         self._message = DiagnosticArray()
 
     def switch(self, *, on: bool) -> None:
         """Start or stop publishing."""
-        if on and self._publisher is None:
-            self._publisher = new_publisher(
-                self._node, Topic('/diagnostics', DiagnosticArray, depth=10, is_latched=False))
-            self.publish()
-        elif not on and self._publisher is not None:
-            self._node.destroy_publisher(self._publisher)
-            self._publisher = None
+        self._publisher.switch(on=on)
+        self.publish()
 
     def update(self, loaded: LoadedScene, failure: Sequence[str] = ()) -> None:
         """
@@ -69,8 +64,6 @@ class Diagnostics:
 
     def publish(self) -> None:
         """Publish the status, if there is one and it is switched on."""
-        if self._publisher is None:
-            return
         if self._last is not None:
             name = self._node.get_fully_qualified_name().lstrip('/')
             self._message.status = [

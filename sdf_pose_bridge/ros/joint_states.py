@@ -33,8 +33,7 @@ from rclpy.task import Future
 
 from sdf_pose_bridge.ros.background import wake
 from sdf_pose_bridge.ros.cdr import NANOSECONDS
-from sdf_pose_bridge.ros.joint_names import Meaning, Meanings
-from sdf_pose_bridge.ros.joint_state_topic import JointStateTopic, Message
+from sdf_pose_bridge.ros.joint_state_topic import JointStateTopic, Meaning, Meanings, Message
 from sdf_pose_bridge.ros.log_lines import line_about_unreported_joints, MissingJoints
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
@@ -53,13 +52,15 @@ GRACE_S = 2.0
 TOPICS_PERIOD_S = 1.0 / 30.0
 """Shortest period of the topics of moving frames, and longest time to take messages at once."""
 
-SILENCE_S = 1.0
-"""Seconds without a message, and two periods at least, after which a topic is silent. With fewer,
-each message of many slow robots would be published by itself."""
+SILENCE_NS = NANOSECONDS
+"""Time without a message, and two periods at least, after which a topic is silent. With less, each
+message of many slow robots would be published by itself."""
 
 _REST_S = 0.5
 _LONGEST_SLEEP_S, _CLOCK_PERIOD_S = 0.1, 0.01
 """Longest waits in a period: before too many messages wait, and for a simulated clock."""
+
+_NO_ROWS: NDArray[np.intp] = np.array([], np.intp)
 
 
 class _Target(NamedTuple):
@@ -103,12 +104,10 @@ class JointStates:
         self._due: dict[Callable[[], None], float] = {}
         self._topics_due = 0.0
         self._now_ns = 0
-        self._has_jumped = False
-        self._has_moved = False
-        self._has_reported_missing = False
-        self._period = 0
+        self._is_simulated = self._has_jumped = False
+        self._has_moved = self._has_reported_missing = False
         self._start_frames()
-        self._end_periods()
+        self._end_period()
         self.follow(frames, topics, settings)
         self._thread = threading.Thread(target=self._run, name='joint states', daemon=True)
         self._thread.start()
@@ -239,9 +238,8 @@ class JointStates:
     def _longest_wait(self) -> float:
         seconds = min(self._due.values(), default=math.inf) - time.monotonic()
         if self._is_in_period:
-            is_simulated = self._node.get_clock().ros_time_is_active
             seconds = min(
-                seconds, _LONGEST_SLEEP_S, _CLOCK_PERIOD_S if is_simulated
+                seconds, _LONGEST_SLEEP_S, _CLOCK_PERIOD_S if self._is_simulated
                 else (self._period_ends_ns - time.time_ns()) / NANOSECONDS)
         return max(seconds, 0.0)
 
@@ -256,10 +254,11 @@ class JointStates:
         if self._target.frames is not before.frames:
             self._target.frames.positions.take_over(before.frames.positions)
             self._start_frames()
-        self._end_periods()
+        self._end_period()
 
     def _start_frames(self) -> None:
         self._meanings = Meanings(self._target.frames)
+        self._waiting = _NO_ROWS
         now = time.monotonic()
         self._due[self._publish_all] = self._due[self._publish_at_rest] = now
         if not self._has_reported_missing:
@@ -271,27 +270,13 @@ class JointStates:
     def _is_in_period(self) -> bool:
         return self._period_ends_ns < math.inf
 
-    def _begin_period(self, awaited: Sequence[JointStateTopic]) -> None:
-        """Begin a period, for whose end the messages of all but some topics wait."""
-        self._period_ends_ns = self._now_ns + self._target.period_ns
-        self._period += 1
-        self._awaited = awaited
-
     def _end_period(self) -> None:
-        """Publish what has waited; without any, publish the next message at once."""
-        rows = np.flatnonzero(self._target.frames.is_waiting)
+        """Publish what has waited, if anything has; otherwise publish the next message at once."""
+        rows, self._waiting = self._waiting, _NO_ROWS
+        self._period_ends_ns, self._awaited = math.inf, self._target.topics
         if len(rows):
-            self._target.frames.publish_tf(rows)
-            self._publish_topics_soon()
-            longest = max(2.0, SILENCE_S * NANOSECONDS / self._target.period_ns)
-            self._begin_period([
-                each for each in self._target.topics if self._period - each.last_period > longest])
-        else:
-            self._end_periods()
-
-    def _end_periods(self) -> None:
-        self._period_ends_ns = math.inf
-        self._awaited = self._target.topics
+            silent_ns = self._now_ns - max(2.0 * self._target.period_ns, SILENCE_NS)
+            self._publish(rows, [each for each in self._awaited if each.last_ns < silent_ns])
 
     # Messages
 
@@ -303,48 +288,41 @@ class JointStates:
             period has begun. Otherwise it waits, and of those with the same names the newest
             counts.
         """
-        newest: dict[Meaning, tuple[JointStateTopic, Message]] = {}
+        newest: dict[Meaning, Message] = {}
         # Messages may come faster than they are taken. Topics take turns, so that one with too
         # many messages does not delay the others.
         ends_at = time.monotonic() + TOPICS_PERIOD_S
-        while topics:
-            taken = [(topic, data) for topic in topics if (data := topic.take()) is not None]
-            for topic, data in taken:
-                message = topic.read(data, self._meanings)
-                if message is not None:
-                    _, known = newest.get(message.meaning, (topic, message))
-                    if not 0 < message.stamp_ns < known.stamp_ns:
-                        newest[message.meaning] = topic, message
-            topics = [topic for topic, _ in taken] if time.monotonic() < ends_at else []
-            if newest and (at_once or not topics):
-                moved = [self._move(topic, message) for topic, message in newest.values()]
-                rows = moved[0] if len(moved) == 1 else np.unique(np.concatenate(moved))
-                if not at_once:
-                    self._target.frames.is_waiting[rows] = True
-                elif len(rows):
-                    self._publish_at_once(rows)
+        while topics and time.monotonic() < ends_at:
+            topics = [topic for topic in topics if topic.take(self._meanings, newest)]
+            if at_once:
+                self._publish_at_once(_union([self._move(each) for each in newest.values()]))
                 newest.clear()
-            if at_once and self._is_in_period:
-                break
+                # The wait tells whether there are more. Callers wait for all of them.
+                if self._is_in_period or not self._callers:
+                    return
+        self._waiting = _union([self._waiting, *(self._move(each) for each in newest.values())])
 
     def _follow_clock(self) -> None:
         """Accept any stamp after time has jumped back, for example when a bag starts again."""
         clock = self._node.get_clock()
-        now_ns = clock.now().nanoseconds if clock.ros_time_is_active else time.time_ns()
+        self._is_simulated = clock.ros_time_is_active
+        now_ns = clock.now().nanoseconds if self._is_simulated else time.time_ns()
         self._has_jumped = now_ns < self._now_ns
         self._now_ns = now_ns
         if self._has_jumped:
             self._logger.info('time has jumped back', throttle_duration_sec=10.0)
             self._target.frames.forget_stamps()
+            self._waiting = _NO_ROWS
+            for topic in self._target.topics:
+                topic.last_ns = 0
 
-    def _move(self, topic: JointStateTopic, message: Message) -> NDArray[np.intp]:
-        """Set the positions of a message; return the moving transforms to publish."""
-        target, meaning = self._target, message.meaning
+    def _move(self, message: Message) -> NDArray[np.intp]:
+        target, topic, meaning = self._target, message.topic, message.meaning
         positions, ignores_stamps = target.frames.positions, target.settings.ignore_timestamp
         stamp_ns = message.stamp_ns or self._node.get_clock().now().nanoseconds
         if self._has_jumped and stamp_ns > self._now_ns:
-            return np.array([], np.intp)  # it was sent before that
-        topic.last_period = self._period
+            return _NO_ROWS  # it was sent before that
+        topic.last_ns = self._now_ns
         topic.warn_about_invalid(positions.update(
             meaning.selection, message.positions, stamp_ns, ignore_stamps=ignores_stamps))
         if self._has_reported_missing and not positions.unreported():
@@ -361,25 +339,35 @@ class JointStates:
 
     # Publication
 
-    def _publish_at_once(self, rows: NDArray[np.intp]) -> None:
-        """Publish moving transforms; with a highest rate, a period begins if there is none."""
+    def _publish(
+        self, rows: NDArray[np.intp], awaited: Sequence[JointStateTopic] = (),
+    ) -> None:
+        """
+        Publish moving transforms; with a highest rate, a period begins if there is none.
+
+        :param awaited: the topics whose messages do not wait for the end of this period.
+        """
         self._target.frames.publish_tf(rows)
-        self._publish_topics_soon()
-        if self._is_in_period:
-            self._awaited = [each for each in self._awaited if each.last_period < self._period]
-        # Simulated time that has not begun would never end a period.
-        elif self._target.period_ns and self._now_ns:
-            self._begin_period([])
-
-    def _publish_all(self) -> None:
-        """Publish all frames on ``/tf``; repeatedly as long as no message has come."""
-        if self._target.frames.publish_all():
-            self._due[self._publish_all] = time.monotonic() + INITIAL_PERIOD_S
-
-    def _publish_topics_soon(self) -> None:
         now = time.monotonic()
         self._due[self._publish_to_listeners] = max(self._topics_due, now)
         self._due[self._publish_at_rest] = now + _REST_S
+        # Simulated time that has not begun would never end a period.
+        if self._target.period_ns and self._now_ns and not self._is_in_period:
+            self._period_ends_ns = self._now_ns + self._target.period_ns
+            self._awaited = awaited
+
+    def _publish_at_once(self, rows: NDArray[np.intp]) -> None:
+        if len(rows) and self._is_in_period:
+            self._waiting = np.setdiff1d(self._waiting, rows)
+            self._awaited = [each for each in self._awaited if each.last_ns < self._now_ns]
+        if len(rows):
+            self._publish(rows)
+
+    def _publish_all(self) -> None:
+        """Publish all frames on ``/tf``; repeatedly as long as no message has come."""
+        self._waiting = _NO_ROWS
+        if self._target.frames.publish_all():
+            self._due[self._publish_all] = time.monotonic() + INITIAL_PERIOD_S
 
     def _publish_to_listeners(self) -> None:
         # A late one does not delay those that follow.
@@ -396,3 +384,9 @@ class JointStates:
         if unreported.number:
             self._has_reported_missing = True
             self._logger.info(line_about_unreported_joints(unreported))
+
+
+def _union(parts: Sequence[NDArray[np.intp]]) -> NDArray[np.intp]:
+    """Return the rows of all parts, most often of one, in ascending order."""
+    parts = [each for each in parts if len(each)]
+    return parts[0] if len(parts) == 1 else np.unique(np.concatenate([_NO_ROWS, *parts]))

@@ -98,18 +98,14 @@ def lines_about_lost_frames(before: TfTree, after: TfTree) -> list[str]:
     :return: a line about removed frames, and one about frames without a parent, if any.
     """
     lost = _children(before) - _children(after)
-    detached = sorted(lost.intersection(after.frame_ids))
-    vanished = sorted(lost.difference(after.frame_ids))
-    lines = []
-    if vanished:
-        lines.append(
-            f'{count_in_words(len(vanished), "frame")} no longer published, which TF listeners '
-            f'keep until they are restarted: {names_in_line(vanished)}')
-    if detached:
-        lines.append(
-            f'{count_in_words(len(detached), "frame")} without a parent now; TF listeners keep '
-            f'the last transform until they are restarted: {names_in_line(detached)}')
-    return lines
+    frames = {
+        'no longer published, which TF listeners keep until they are restarted':
+            lost.difference(after.frame_ids),
+        'without a parent now; TF listeners keep the last transform until they are restarted':
+            lost.intersection(after.frame_ids)}
+    return [
+        f'{count_in_words(len(found), "frame")} {what}: {names_in_line(sorted(found))}'
+        for what, found in frames.items() if found]
 
 
 def line_about_detached_models(tree: TfTree, scene: Scene) -> str:

@@ -16,6 +16,7 @@ from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.task import Future
+from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
 from sdf_pose_bridge.errors import AddressError, SdfError
@@ -24,7 +25,7 @@ from sdf_pose_bridge.ros.background import CoroutineLock, PollingThread, run_in_
 from sdf_pose_bridge.ros.cdr import NANOSECONDS
 from sdf_pose_bridge.ros.diagnostics import Diagnostics, PERIOD_S
 from sdf_pose_bridge.ros.file_follower import FileFollower
-from sdf_pose_bridge.ros.given_parameters import changed_settings
+from sdf_pose_bridge.ros.given_parameters import add_setting_services, changed_settings
 from sdf_pose_bridge.ros.log_lines import (
     line_about_frames,
     line_about_joints_at_rest,
@@ -34,10 +35,9 @@ from sdf_pose_bridge.ros.log_lines import (
     lines_from_warnings,
     MissingJoints,
 )
-from sdf_pose_bridge.ros.parameter_services import add_setting_services
 from sdf_pose_bridge.ros.parameters import Settings, SettingsError
 from sdf_pose_bridge.ros.published_frames import frames_from_scene, PublishedFrames
-from sdf_pose_bridge.ros.publishers import TextPublisher
+from sdf_pose_bridge.ros.publishers import SwitchedPublisher, Topic
 from sdf_pose_bridge.ros.scene_reader import SceneReader
 from sdf_pose_bridge.ros.services import add_services, SERVICE_QOS, set_pose
 from sdf_pose_bridge.ros.topic_names import (
@@ -59,7 +59,6 @@ class SdfPoseBridge:
 
     :param node: the node, with declared parameters and an executor.
     :param frames: the frames of the scene, which are published.
-    :param reader: reads files.
     """
 
     def __init__(
@@ -72,7 +71,9 @@ class SdfPoseBridge:
         self._settings = settings
         self._loaded = loaded
         self._reader = reader
-        self._diagnostics = Diagnostics(node, self._unreported_joints)
+        self._joint_states: JointStates | None = None
+        self._diagnostics = Diagnostics(
+            node, lambda: self._joint_states.unreported if self._joint_states else MissingJoints())
         self._has_told_of_joints = False
         self._follower = FileFollower(loaded)
         # All callbacks that change the published scene run one after the other.
@@ -86,7 +87,6 @@ class SdfPoseBridge:
             1.0, self._publish_again, callback_group=MutuallyExclusiveCallbackGroup(),
             clock=steady_clock, autostart=False)
         self._publish_again_at(settings.publish_rate)
-        self._joint_states: JointStates | None = None
         self._follow_joints()
         add_services(node, self._current_lookup)
         node.create_service(
@@ -105,7 +105,7 @@ class SdfPoseBridge:
         # Imported here because it is slow to import, and everything else is more urgent.
         from sdf_pose_bridge.ros.visuals import VisualPublisher
         # With the quality of service that it has in robot_state_publisher.
-        self._robot_description = TextPublisher(node, 'robot_description')
+        self._robot_description = SwitchedPublisher(node, Topic('robot_description', String))
         self._publish_robot_description()
         self._visuals = VisualPublisher(node, self._reader, loaded)
         self._follow_switches()
@@ -166,17 +166,14 @@ class SdfPoseBridge:
         if self._joint_states is not None:
             await self._joint_states.catch_up()
 
-    def _unreported_joints(self) -> MissingJoints:
-        return MissingJoints() if self._joint_states is None else (
-            self._joint_states.unreported)
-
     def _follow_switches(self) -> None:
         self._diagnostics.switch(on=self._settings.publish_diagnostics)
         self._visuals.switch(on=self._settings.publish_visuals)
 
     def _publish_robot_description(self) -> None:
-        self._robot_description.publish(
-            self._loaded.description if self._settings.publish_robot_description else '')
+        text = self._loaded.description if self._settings.publish_robot_description else ''
+        self._robot_description.switch(on=bool(text))
+        self._robot_description.publish(String(data=text))
 
     def _report_success(self) -> None:
         loaded = self._loaded
@@ -275,8 +272,7 @@ class SdfPoseBridge:
 
     async def _apply(self, settings: Settings, loaded: LoadedScene) -> None:
         before, self._settings = self._settings, settings
-        if settings.publish_rate != before.publish_rate:
-            self._publish_again_at(settings.publish_rate)
+        self._publish_again_at(settings.publish_rate)
         if loaded is not self._loaded or (
                 settings.pose_topics, settings.publish_transforms) != (
                     before.pose_topics, before.publish_transforms):

@@ -30,12 +30,12 @@ from rclpy.utilities import remove_ros_args
 
 from sdf_pose_bridge.errors import AddressError, SdfError
 from sdf_pose_bridge.ros.given_parameters import (
+    restrict_parameter_services,
     settings_from_node,
     warnings_about_unknown_parameters,
 )
 from sdf_pose_bridge.ros.log_lines import lines_from_error, lines_from_warnings
 from sdf_pose_bridge.ros.middleware import use_profile
-from sdf_pose_bridge.ros.parameter_services import restrict_parameter_services
 from sdf_pose_bridge.ros.parameters import SettingsError, Value
 from sdf_pose_bridge.ros.published_frames import PublishedFrames, TF_STATIC
 from sdf_pose_bridge.ros.publishers import Publishers

@@ -9,9 +9,8 @@ once, moving frames repeatedly, by the thread that follows joint states.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 import contextlib
-from itertools import compress
 
 from geometry_msgs.msg import PoseStamped, TransformStamped
 import numpy as np
@@ -93,62 +92,48 @@ class PublishedFrames:
         self.stamp_ns: int = publishers.now_ns() if (
             before is None or before.tree is not tree) else before.stamp_ns
         self._tf_static = publishers.opened(TF_STATIC)
-        self._fixed_transforms = _records_of_transforms(tree, tree.fixed_indices)
-        self._transforms_topics = [
-            _transforms_topic(len(tree.fixed_indices), 'fixed')] if has_transforms else []
-        posed = () if tree.moving is None else tree.moving.posed_indices
-        moving_ids = {tree.frame_ids[index] for index in posed}
+        self._transforms = _records_of_transforms(tree, tree.fixed_indices)
+        moved = set() if tree.moving is None else set(tree.moving.posed_indices.tolist())
         # A frame that begins to move has another publisher, which does not keep its last pose.
-        self._pose_topics = {
-            frame_id: Topic(
-                f'~/poses/{name}', PoseStamped, part='moving' if frame_id in moving_ids else '')
-            for frame_id, name in pose_topics.items()}
-        fixed = [
-            index for index, frame_id in enumerate(tree.frame_ids)
-            if frame_id in pose_topics and frame_id not in moving_ids]
-        self._fixed_pose_topics = [self._pose_topics[tree.frame_ids[index]] for index in fixed]
-        self._fixed_poses = StampedRecords(
-            [[tree.pose_frame] * len(fixed)], tree.poses_in_pose_frame[fixed])
+        topics = {
+            index: Topic(
+                f'~/poses/{pose_topics[frame_id]}', PoseStamped,
+                part='moving' if index in moved else '')
+            for index, frame_id in enumerate(tree.frame_ids) if frame_id in pose_topics}
+        # Serialized messages, and the topic of each.
+        self._fixed = [_poses_with_topics(tree, topics, topics.keys() - moved)]
         self.moving: PublishedMovingFrames | None = None
         """The moving frames; None if joints move nothing."""
+        self._topics = [TF_STATIC, *topics.values()]
+        if has_transforms:
+            topic = _transforms_topic(len(tree.fixed_indices), 'fixed')
+            self._topics.append(topic)
+            self._fixed.insert(0, (self._transforms, [topic] * len(tree.fixed_indices)))
         if tree.moving is not None and positions is not None:
-            self.moving = PublishedMovingFrames(
-                publishers, tree, tree.moving, positions, self._pose_topics)
+            self.moving = PublishedMovingFrames(publishers, tree, tree.moving, positions, topics)
+            self._topics += [TF, self.moving.transforms_topic] if has_transforms else [TF]
 
     def publish_tf_static(self) -> None:
         """Publish all fixed frames on ``/tf_static``."""
-        self._fixed_transforms.set_stamps(self.stamp_ns)
-        self._tf_static.publish(self._fixed_transforms.tf_message())
+        self._transforms.set_stamps(self.stamp_ns)
+        self._tf_static.publish(self._transforms.tf_message())
 
     async def publish_topics(self) -> None:
         """Publish all fixed frames on all other topics, and make those of moving frames."""
-        topics = [TF_STATIC, *self._transforms_topics, *self._pose_topics.values()]
-        if self.moving is not None:
-            topics.append(TF)
-            if self._transforms_topics:
-                topics.append(self.moving.transforms_topic)
         # All publishers of poses may take a second.
-        for topic in self._transforms_topics:
-            self.publishers.opened(topic)
-        await self._send_transforms()
-        await self.publishers.replace(dict.fromkeys(topics))
-        await self._send(self._fixed_pose_topics, self._fixed_poses)
+        await self.publishers.replace(dict.fromkeys(self._topics))
+        await self._publish_one_by_one()
 
     async def publish_fixed_again(self) -> None:
         """Publish all fixed frames on all topics with a new stamp."""
         self.stamp_ns = self.publishers.now_ns()
         self.publish_tf_static()
-        await self._send_transforms()
-        await self._send(self._fixed_pose_topics, self._fixed_poses)
+        await self._publish_one_by_one()
 
-    async def _send_transforms(self) -> None:
-        for topic in self._transforms_topics:
-            records = self._fixed_transforms
-            await self._send([topic] * len(records), records)
-
-    async def _send(self, topics: Sequence[Topic], records: StampedRecords) -> None:
-        records.set_stamps(self.stamp_ns)
-        await self.publishers.send(topics, records.messages())
+    async def _publish_one_by_one(self) -> None:
+        for records, topics in self._fixed:
+            records.set_stamps(self.stamp_ns)
+            await self.publishers.send(topics, records.messages())
 
 
 class PublishedMovingFrames:
@@ -158,29 +143,25 @@ class PublishedMovingFrames:
     A transform goes to ``/tf`` with a stamp that is newer than its last one, as TF rejects others.
 
     :param positions: the positions of the joints; the caller sets them.
-    :param pose_topics: the topics of poses, by frame id.
+    :param pose_topics: the topics of poses, by the indices of frames.
     """
 
     def __init__(
         self, publishers: Publishers, tree: TfTree, moving: MovingFrames,
-        positions: JointPositions, pose_topics: Mapping[str, Topic],
+        positions: JointPositions, pose_topics: Mapping[int, Topic],
     ) -> None:
         self._publishers = publishers
         self.frames = moving
         self.positions = positions
         # The last stamp of each moving transform.
         self._stamps_ns = np.full(len(moving.indices), NEVER)
-        self.is_waiting = np.zeros(len(moving.indices), np.bool_)
-        """Which of the moving transforms wait for the end of a period."""
+        self._newest_ns = NEVER
         self._tf = publishers.opened(TF)
         self.transforms_topic = _transforms_topic(len(moving.indices), 'moving')
         self._transforms = _records_of_transforms(tree, moving.indices)
-        topics = [pose_topics.get(tree.frame_ids[index]) for index in moving.posed_indices]
-        self._posed_rows = [row for row, topic in enumerate(topics) if topic is not None]
-        self._posed_topics = [topic for topic in topics if topic is not None]
-        self._poses = StampedRecords(
-            [[tree.pose_frame] * len(self._posed_rows)],
-            tree.poses_in_pose_frame[moving.posed_indices[self._posed_rows]])
+        self._posed_rows = np.flatnonzero(np.isin(moving.posed_indices, list(pose_topics)))
+        self._poses, self._posed_topics = _poses_with_topics(
+            tree, pose_topics, moving.posed_indices[self._posed_rows].tolist())
 
     @property
     def has_transform(self) -> NDArray[np.bool_]:
@@ -198,15 +179,16 @@ class PublishedMovingFrames:
         :param ignore_stamps: whether it need not be newer.
         :return: those for which it is newer.
         """
-        if not ignore_stamps:
+        if stamp_ns <= self._newest_ns and not ignore_stamps:
             rows = rows[self._stamps_ns[rows] < stamp_ns]
+        self._newest_ns = max(self._newest_ns, stamp_ns)
         self._stamps_ns[rows] = stamp_ns
+        self._transforms.set_stamps(stamp_ns, rows)
         return rows
 
     def forget_stamps(self) -> None:
         """Accept any stamp next, after time has jumped back."""
-        self._stamps_ns[:] = NEVER
-        self.is_waiting[:] = False
+        self._stamps_ns[:] = self._newest_ns = NEVER
         self.positions.forget_stamps()
 
     def publish_all(self) -> bool:
@@ -217,28 +199,25 @@ class PublishedMovingFrames:
             node.
         """
         rows = np.flatnonzero(self.has_transform)
+        if not len(rows):
+            return False
         last_ns = self.positions.stamps_ns[self.frames.last_dofs[rows]]
         is_stamped = last_ns != NEVER
         # TF would reject other transforms with the same stamps.
         self._stamps_ns[rows[is_stamped]] = last_ns[is_stamped] + 1
-        self.publish_tf(rows, np.where(is_stamped, last_ns + 1, self._publishers.now_ns()))
-        return len(rows) > 0 and not is_stamped.any()
-
-    def publish_tf(
-        self, rows: NDArray[np.intp], stamps_ns: NDArray[np.int64] | None = None,
-    ) -> None:
-        """
-        Publish moving transforms in one message on ``/tf``.
-
-        :param rows: their indices, in ascending order; without any, nothing is published.
-        :param stamps_ns: their stamps in nanoseconds; by default those of :meth:`stamp`.
-        """
-        if not len(rows):
-            return
-        self.is_waiting[rows] = False
-        self._transforms.set_poses(self.frames.transforms(self.positions.values))
+        self._newest_ns = self._stamps_ns.max()
         self._transforms.set_stamps(
-            self._stamps_ns[rows] if stamps_ns is None else stamps_ns, rows)
+            np.where(is_stamped, last_ns + 1, self._publishers.now_ns()), rows)
+        self.publish_tf(rows)
+        return not is_stamped.any()
+
+    def publish_tf(self, rows: NDArray[np.intp]) -> None:
+        """
+        Publish moving transforms in one message on ``/tf``, with their stamps.
+
+        :param rows: their indices, in ascending order; at least one.
+        """
+        self._transforms.set_poses(self.frames.transforms(self.positions.values))
         self._tf.publish(self._transforms.tf_message(rows))
 
     def publish_topics(self, *, only_listeners: bool) -> None:
@@ -249,39 +228,32 @@ class PublishedMovingFrames:
         """
         # The executor destroys topics of frames that are no longer published.
         with contextlib.suppress(InvalidHandle):
-            self._publish_transforms(only_listeners=only_listeners)
-            self._publish_poses(only_listeners=only_listeners)
+            publishers = self._wanted([self.transforms_topic], only_listeners=only_listeners)
+            if any(publishers):
+                self._transforms.set_poses(self.frames.transforms(self.positions.values))
+                self._transforms.set_stamps(self._stamps(self.frames.last_dofs))
+                messages = self._transforms.messages()
+                # They may wait to be published on /tf.
+                self._transforms.set_stamps(self._stamps_ns)
+                _publish(publishers * len(messages), messages, self.has_transform)
+            publishers = self._wanted(self._posed_topics, only_listeners=only_listeners)
+            if any(publishers):
+                frames, rows = self.frames, self._posed_rows
+                self._poses.set_poses(frames.poses(self.positions.values)[rows])
+                self._poses.set_stamps(
+                    self._stamps(frames.posed_last_dofs[rows], frames.last_dof_of_pose_frame))
+                _publish(
+                    publishers, self._poses.messages(),
+                    frames.has_pose(self.positions.is_known)[rows])
 
-    def _publish_transforms(self, *, only_listeners: bool) -> None:
-        publisher = self._wanted_publisher(self.transforms_topic, only_listeners=only_listeners)
-        if publisher is None:
-            return
-        self._transforms.set_poses(self.frames.transforms(self.positions.values))
-        self._transforms.set_stamps(self._stamps(self.frames.last_dofs))
-        for message in compress(self._transforms.messages(), self.has_transform):
-            publisher.publish(message)
-
-    def _publish_poses(self, *, only_listeners: bool) -> None:
-        publishers = [
-            self._wanted_publisher(topic, only_listeners=only_listeners)
-            for topic in self._posed_topics]
-        if not any(publishers):
-            return
-        frames, rows = self.frames, self._posed_rows
-        self._poses.set_poses(frames.poses(self.positions.values)[rows])
-        self._poses.set_stamps(
-            self._stamps(frames.posed_last_dofs[rows], frames.last_dof_of_pose_frame))
-        has_pose = frames.has_pose(self.positions.is_known)[rows]
-        for publisher, message, is_known in zip(
-                publishers, self._poses.messages(), has_pose, strict=True):
-            if publisher is not None and is_known:
-                publisher.publish(message)
-
-    def _wanted_publisher(self, topic: Topic, *, only_listeners: bool) -> Publisher | None:
-        publisher = self._publishers.existing(topic)
-        if publisher is None or (only_listeners and not publisher.get_subscription_count()):
-            return None
-        return publisher
+    def _wanted(
+        self, topics: Sequence[Topic], *, only_listeners: bool,
+    ) -> list[Publisher | None]:
+        """Return the publisher of each topic, or None if nothing is to be published there."""
+        found = map(self._publishers.existing, topics)
+        return [
+            each if each and (not only_listeners or each.get_subscription_count()) else None
+            for each in found]
 
     def _stamps(self, dofs: Indices, dof_of_reference: int = NO_DOF) -> NDArray[np.int64]:
         """
@@ -296,8 +268,25 @@ class PublishedMovingFrames:
         return np.where(newest == NEVER, self._publishers.now_ns(), newest)
 
 
+def _publish(
+    publishers: Sequence[Publisher | None], messages: Sequence[bytes], is_known: Iterable[bool],
+) -> None:
+    for publisher, message, has_pose in zip(publishers, messages, is_known, strict=True):
+        if publisher is not None and has_pose:
+            publisher.publish(message)
+
+
 def _records_of_transforms(tree: TfTree, indices: NDArray[np.intp]) -> StampedRecords:
     return StampedRecords(tree.ids_of_transforms(indices), tree.transforms[indices])
+
+
+def _poses_with_topics(
+    tree: TfTree, topics: Mapping[int, Topic], frames: Iterable[int],
+) -> tuple[StampedRecords, list[Topic]]:
+    indices = sorted(frames)
+    return StampedRecords(
+        [[tree.pose_frame] * len(indices)], tree.poses_in_pose_frame[indices],
+    ), [topics[index] for index in indices]
 
 
 def _transforms_topic(count: int, part: str) -> Topic:

@@ -11,9 +11,9 @@ from rclpy.event_handler import PublisherEventCallbacks, QoSPublisherMatchedInfo
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.qos_overriding_options import QoSOverridingOptions
 
 from sdf_pose_bridge.ros.background import run_other_callbacks
-from sdf_pose_bridge.ros.qos_overrides import PUBLISHER_OVERRIDES
 
 # Number of messages or publishers, made in a few milliseconds, before other callbacks run.
 MESSAGES_AT_ONCE = 500
@@ -115,34 +115,38 @@ def new_publisher(
     # callback, a thousand of them in a large scene.
     return node.create_publisher(
         topic.message_type, topic.name, quality,
-        qos_overriding_options=PUBLISHER_OVERRIDES if topic.is_overridable else None,
+        qos_overriding_options=QoSOverridingOptions.with_default_policies()
+        if topic.is_overridable else None,
         event_callbacks=PublisherEventCallbacks(matched=matched, use_default_callbacks=False))
 
 
-class TextPublisher:
+class SwitchedPublisher:
     """
-    Publishes a text on a latched topic of std_msgs/String; without a text there is no topic.
+    The publisher of a topic that exists while it is switched on.
 
-    :param name: the name of the topic.
+    :param matched: called when a listener comes or goes.
     """
 
-    def __init__(self, node: Node, name: str) -> None:
-        # Imported here because it is slow to import, and transforms are published before texts.
-        from std_msgs.msg import String
-        self._node = node
-        self._topic = Topic(name, String)
+    def __init__(
+        self, node: Node, topic: Topic,
+        matched: Callable[[QoSPublisherMatchedInfo], None] | None = None,
+    ) -> None:
+        self._node, self._topic, self._matched = node, topic, matched
         self._publisher: Publisher | None = None
 
-    def publish(self, text: str) -> None:
-        """
-        Publish a text.
-
-        :param text: the text; if it is empty, the topic is removed, so that nobody gets an old
-            text.
-        """
-        if text:
-            self._publisher = self._publisher or new_publisher(self._node, self._topic)
-            self._publisher.publish(self._topic.message_type(data=text))
-        elif self._publisher is not None:
+    def switch(self, *, on: bool) -> None:
+        """Make the publisher or destroy it. Then nobody gets an old message."""
+        if on and self._publisher is None:
+            self._publisher = new_publisher(self._node, self._topic, self._matched)
+        elif not on and self._publisher is not None:
             self._node.destroy_publisher(self._publisher)
             self._publisher = None
+
+    def publish(self, message: object) -> None:
+        """Publish a message if it is switched on."""
+        if self._publisher is not None:
+            self._publisher.publish(message)
+
+    def has_listeners(self) -> bool:
+        """Return whether it is switched on and somebody listens."""
+        return self._publisher is not None and self._publisher.get_subscription_count() > 0

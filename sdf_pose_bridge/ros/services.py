@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import array
 from collections.abc import Awaitable, Callable, Iterable
+from functools import partial
 import traceback
 from typing import Any, TypeAlias
 
@@ -55,37 +56,30 @@ def add_services(node: Node, lookup: Callable[[], Awaitable[PoseLookup]]) -> Non
     # Requests that may take long are answered in a thread, one after the other.
     turn = CoroutineLock(node)
 
-    async def in_thread(
-        answer: Callable[[Any, Any], Any], request: Any, response: Any,
-    ) -> Any:
+    def answered(answer: Answer, request: Any, response: Any) -> Any:
+        return response_from_answer(answer, request, response, logger.error)
+
+    async def answered_in_thread(answer: Answer, request: Any, response: Any) -> Any:
         async with turn:
             try:
-                return await run_in_thread(node, lambda: answer(request, response))
+                return await run_in_thread(node, lambda: answered(answer, request, response))
             except MemoryError as error:
                 response.message = str(error)
                 return response
 
-    async def convert_poses(
-        request: ConvertPoses.Request, response: ConvertPoses.Response,
-    ) -> Any:
-        answer = never_raising(answer_to_convert_poses, logger.error)
-        return await in_thread(answer, request, response)
-
     async def lookup_pose(request: LookupPose.Request, response: LookupPose.Response) -> Any:
         current = await lookup()
-        answer = never_raising(
-            lambda request, response: answer_to_lookup_pose(request, response, current, clock),
-            logger.error)
+        answer = partial(answer_to_lookup_pose, lookup=current, clock=clock)
         if current.knows(request.frame) and (
                 not request.relative_to or current.knows(request.relative_to)):
-            return answer(request, response)
+            return answered(answer, request, response)
         # Finding the nearest name takes long if there are many.
-        return await in_thread(answer, request, response)
+        return await answered_in_thread(answer, request, response)
 
     for service_type, name, callback in (
-        (ConvertRotation, 'convert_rotation',
-         never_raising(answer_to_convert_rotation, logger.error)),
-        (ConvertPoses, 'convert_poses', convert_poses), (LookupPose, 'lookup_pose', lookup_pose),
+        (ConvertRotation, 'convert_rotation', partial(answered, answer_to_convert_rotation)),
+        (ConvertPoses, 'convert_poses', partial(answered_in_thread, answer_to_convert_poses)),
+        (LookupPose, 'lookup_pose', lookup_pose),
     ):
         node.create_service(
             service_type, f'~/{name}', callback, qos_profile=SERVICE_QOS, callback_group=group)
@@ -178,25 +172,24 @@ def _fill(message: Any, numbers: Iterable[float]) -> None:
         setattr(message, field, number)
 
 
-def never_raising(answer: Answer, log_error: Callable[[str], object]) -> Callable[[Any, Any], Any]:
+def response_from_answer(
+    answer: Answer, request: Any, response: Any, log_error: Callable[[str], object],
+) -> Any:
     """
-    Return a callback that also answers after a refusal or a defect.
+    Answer a request, also after a refusal or a defect, which would end the node.
 
     :param answer: fills the response to a request, or raises one of ``REFUSALS``.
     :param log_error: takes the traceback of another exception.
-    :return: a callback that answers ``success: false`` instead of raising, which would end the
-        node.
+    :return: the response; with ``success: false`` after an exception.
     """
-    def callback(request: Any, response: Any) -> Any:
-        try:
-            answer(request, response)
-        except REFUSALS as error:
-            response.message = error.message if isinstance(error, SdfError) else str(error)
-        except Exception as error:  # noqa: BLE001 - whatever it is, the client must be answered
-            log_error(f'internal error in a service:\n{traceback.format_exc()}')
-            response = type(response)()
-            response.message = f'internal error, see the log of the node: {error!r}'
-        else:
-            response.success = True
-        return response
-    return callback
+    try:
+        answer(request, response)
+    except REFUSALS as error:
+        response.message = error.message if isinstance(error, SdfError) else str(error)
+    except Exception as error:  # noqa: BLE001 - whatever it is, the client must be answered
+        log_error(f'internal error in a service:\n{traceback.format_exc()}')
+        response = type(response)()
+        response.message = f'internal error, see the log of the node: {error!r}'
+    else:
+        response.success = True
+    return response

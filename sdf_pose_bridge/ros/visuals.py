@@ -9,14 +9,13 @@ from collections.abc import Iterable
 from geometry_msgs.msg import Point, Quaternion, Vector3
 from geometry_msgs.msg import Pose as PoseMessage
 from rclpy.node import Node
-from rclpy.publisher import Publisher
 from std_msgs.msg import ColorRGBA, Header
 from visualization_msgs.msg import Marker, MarkerArray
 
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.ros.background import run_in_thread
 from sdf_pose_bridge.ros.log_lines import lines_from_error, lines_from_warnings
-from sdf_pose_bridge.ros.publishers import new_publisher, Topic
+from sdf_pose_bridge.ros.publishers import SwitchedPublisher, Topic
 from sdf_pose_bridge.ros.scene_reader import SceneReader
 from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadedScene
 from sdf_pose_bridge.tf.visual_markers import markers_from_text, VisualMarker
@@ -36,30 +35,23 @@ class VisualPublisher:
         self._node = node
         self._reader = reader
         self._loaded = loaded
-        self._is_up_to_date = False
-        self._publisher: Publisher | None = None
+        self._shown: LoadedScene | None = None
+        self._publisher = SwitchedPublisher(
+            node, Topic('~/visuals', MarkerArray), lambda _: self._publish_to_listeners())
 
     def switch(self, *, on: bool) -> None:
         """Start or stop publishing."""
-        if on and self._publisher is None:
-            self._publisher = new_publisher(
-                self._node, Topic('~/visuals', MarkerArray),
-                lambda _: self._publish_to_listeners())
-        elif not on and self._publisher is not None:
-            self._node.destroy_publisher(self._publisher)
-            self._publisher = None
-            self._is_up_to_date = False
+        self._publisher.switch(on=on)
+        self._shown = self._shown if on else None
 
     def replace(self, loaded: LoadedScene) -> None:
         """Show another scene from now on."""
         self._loaded = loaded
-        self._is_up_to_date = False
         self._publish_to_listeners()
 
     def _publish_to_listeners(self) -> None:
-        if (not self._is_up_to_date and self._publisher is not None
-                and self._publisher.get_subscription_count() > 0):
-            self._is_up_to_date = True
+        if self._shown is not self._loaded and self._publisher.has_listeners():
+            self._shown = self._loaded
             self._node.executor.create_task(self._publish, self._loaded)
 
     async def _publish(self, loaded: LoadedScene) -> None:
@@ -69,7 +61,7 @@ class VisualPublisher:
             return
         for line in lines:
             self._node.get_logger().warning(line)
-        if message is not None and self._publisher is not None:
+        if message is not None:
             self._publisher.publish(message)
 
 
@@ -106,16 +98,15 @@ def message_from_markers(markers: Iterable[VisualMarker], root_frame: str) -> Ma
 
 def _marker_message(marker: VisualMarker, number: int) -> Marker:
     x, y, z, qx, qy, qz, qw = marker.pose
-    form = marker.form
     # No color means the materials of the mesh itself.
     red, green, blue, alpha = marker.rgba or (0.0, 0.0, 0.0, 0.0)
     return Marker(
         header=Header(frame_id=marker.frame_id), frame_locked=True,
-        ns=marker.namespace, id=number, action=Marker.ADD, type=getattr(Marker, form.type),
+        ns=marker.namespace, id=number, action=Marker.ADD, type=getattr(Marker, marker.type),
         pose=PoseMessage(
             position=Point(x=x, y=y, z=z), orientation=Quaternion(x=qx, y=qy, z=qz, w=qw)),
-        scale=Vector3(**dict(zip('xyz', form.scale, strict=True))),
+        scale=Vector3(**dict(zip('xyz', marker.scale, strict=True))),
         color=ColorRGBA(r=red, g=green, b=blue, a=alpha),
-        points=[Point(x=x, y=y, z=z) for x, y, z in form.points.tolist()],
-        mesh_resource=form.mesh_resource,
+        points=[Point(x=x, y=y, z=z) for x, y, z in marker.points.tolist()],
+        mesh_resource=marker.mesh_resource,
         mesh_use_embedded_materials=marker.rgba is None)

@@ -41,6 +41,9 @@ _MOST_NAMES_SHOWN = 6
 NEVER = -1
 """A time before all others, in nanoseconds."""
 
+_UNREPORTED = NEVER - 1
+"""The time of a position that no message has reported."""
+
 
 class UnreportedJoints(enum.Enum):
     """Treatment of joints that no message has named."""
@@ -70,8 +73,8 @@ class Selection(NamedTuple):
     """Other degrees of freedom that follow these; each after its leader."""
     changed: list[int]
     """All of these, which get a position."""
-    beside: NDArray[np.intp]
-    """All degrees of freedom in the same top-level models."""
+    models: list[int]
+    """The numbers of their top-level models."""
 
 
 class JointPositions:
@@ -91,17 +94,16 @@ class JointPositions:
         self.values = np.zeros(len(dofs))
         """The position of each degree of freedom, in radians or metres. A change is another array,
         so that another thread has all values of one time."""
-        self.is_reported = np.zeros(len(dofs), np.bool_)
-        """Whether each has a reported position, or follows from one that has."""
-        self.stamps_ns = np.full(len(dofs), NEVER)
-        """The newest stamp of a message about the top-level model of each."""
-        self._stamps_of_values_ns = np.full(len(dofs), NEVER)
+        self._stamps_of_values_ns = np.full(len(dofs), _UNREPORTED)
+        self.reported_count = 0
+        """Number of degrees of freedom that :attr:`is_reported` has."""
         self._unreported = unreported
         self._joints = [each.joint.element for each in dofs]
-        self._top_level_elements = np.array(
-            [scene.top_level_element(joint) for joint in self._joints], np.intp)
-        self._indices = _indices_from_names(
-            scene, dofs, self._top_level_elements.tolist(), model)
+        top_level_elements = [scene.top_level_element(joint) for joint in self._joints]
+        # The top-level models have numbers.
+        elements, self._models = np.unique(top_level_elements, return_inverse=True)
+        self._stamps_of_models_ns = [NEVER] * len(elements)
+        self._indices = _indices_from_names(scene, dofs, top_level_elements, model)
         self._slides = frozenset(each.name + SLIDE_SUFFIX for each in dofs if each.is_screw)
         self._followers: dict[int, list[Follower]] = {}
         self._is_free = np.ones(len(dofs), np.bool_)
@@ -126,9 +128,15 @@ class JointPositions:
         return np.ones(len(self.names), np.bool_)
 
     @property
-    def unreported_count(self) -> int:
-        """Number of degrees of freedom without a reported position."""
-        return int(np.count_nonzero(~self.is_reported))
+    def is_reported(self) -> NDArray[np.bool_]:
+        """Whether each has a reported position, or follows from one that has."""
+        found: NDArray[np.bool_] = self._stamps_of_values_ns != _UNREPORTED
+        return found
+
+    @property
+    def stamps_ns(self) -> NDArray[np.int64]:
+        """The newest stamp of a message about the top-level model of each."""
+        return np.array(self._stamps_of_models_ns, np.int64)[self._models]
 
     def unreported(self) -> list[str]:
         """Return a name of each joint without a known position that does not follow another."""
@@ -152,11 +160,10 @@ class JointPositions:
                 if follower.dof not in reached:
                     reached[follower.dof] = follower
                     changed.append(follower.dof)
-        top_level = self._top_level_elements
         return Selection(
             np.array(rows, np.intp), np.array(dofs, np.intp),
             tuple(filter(None, reached.values())), changed,
-            np.flatnonzero(np.isin(top_level, top_level[changed])))
+            np.unique(self._models[changed]).tolist())
 
     def unknown(self, names: Iterable[str], model: str = '') -> list[str]:
         """Find names that are unknown or ambiguous, in a model as for :meth:`selection`."""
@@ -180,28 +187,37 @@ class JointPositions:
         :param ignore_stamps: whether no position stays.
         :return: the names whose values are not finite or too large; their positions stay.
         """
-        dofs, new = selection.dofs, values[selection.rows]
-        is_taken = np.abs(new) <= LARGEST_POSITION  # NaN is not
-        invalid = [self.names[dof] for dof in dofs[~is_taken].tolist()]
-        if not ignore_stamps:
-            is_taken &= self._stamps_of_values_ns[dofs] <= stamp_ns
-        self.stamps_ns[selection.beside] = np.maximum(self.stamps_ns[selection.beside], stamp_ns)
-        changed, is_changed = self.values.copy(), np.zeros(len(self.names), np.bool_)
-        changed[dofs[is_taken]] = new[is_taken]
-        is_changed[dofs[is_taken]] = True
+        dofs, new, invalid = selection.dofs, values[selection.rows], []
+        newest_ns = max((self._stamps_of_models_ns[each] for each in selection.models), default=0)
+        is_late = stamp_ns < newest_ns and not ignore_stamps
+        # Most often all are taken. NaN is not at most anything.
+        if is_late or not np.abs(new).max(initial=0.0) <= LARGEST_POSITION:
+            is_taken = np.abs(new) <= LARGEST_POSITION
+            invalid = [self.names[dof] for dof in dofs[~is_taken].tolist()]
+            if not ignore_stamps:
+                is_taken &= self._stamps_of_values_ns[dofs] <= stamp_ns
+            dofs, new = dofs[is_taken], new[is_taken]
+        for model in selection.models:
+            self._stamps_of_models_ns[model] = max(self._stamps_of_models_ns[model], stamp_ns)
+        changed = self.values.copy()
+        changed[dofs] = new
+        self._stamps_of_values_ns[dofs] = stamp_ns
+        is_changed = set(dofs.tolist())
         for dof, leader, mimic in selection.followers:
             value = mimic.multiplier * (changed[leader] - mimic.reference) + mimic.offset
-            if is_changed[leader] and abs(value) <= LARGEST_POSITION:
+            if leader in is_changed and abs(value) <= LARGEST_POSITION:
                 changed[dof] = value
-                is_changed[dof] = True
-        self._stamps_of_values_ns[is_changed] = stamp_ns
-        self.is_reported |= is_changed
+                self._stamps_of_values_ns[dof] = stamp_ns
+                is_changed.add(dof)
         self.values = changed
+        if self.reported_count < len(self.names):
+            self._count_reported()
         return invalid
 
     def forget_stamps(self) -> None:
         """Accept any time next, after time has jumped back."""
-        self.stamps_ns[:] = self._stamps_of_values_ns[:] = NEVER
+        self._stamps_of_models_ns = [NEVER] * len(self._stamps_of_models_ns)
+        np.minimum(self._stamps_of_values_ns, NEVER, out=self._stamps_of_values_ns)
 
     def take_over(self, before: JointPositions) -> None:
         """Continue with the positions that joints of the same names had before."""
@@ -209,12 +225,14 @@ class JointPositions:
         here = [dof for dof, name in enumerate(self.names) if name in rows]
         there = [rows[self.names[dof]] for dof in here]
         self.values = self.values.copy()
-        for new, old in (
-            (self.values, before.values), (self.is_reported, before.is_reported),
-            (self.stamps_ns, before.stamps_ns),
-            (self._stamps_of_values_ns, before._stamps_of_values_ns),
-        ):
-            new[here] = old[there]
+        self.values[here] = before.values[there]
+        self._stamps_of_values_ns[here] = before._stamps_of_values_ns[there]
+        for new, old in zip(self._models[here], before._models[there], strict=True):
+            self._stamps_of_models_ns[new] = before._stamps_of_models_ns[old]
+        self._count_reported()
+
+    def _count_reported(self) -> None:
+        self.reported_count = int(np.count_nonzero(self.is_reported))
 
 
 def scene_at_positions(scene: Scene, positions: Mapping[str, float]) -> Scene:

@@ -35,33 +35,25 @@ _MARKER_TYPES = {
     Primitive.BOX: 'CUBE', Primitive.CYLINDER: 'CYLINDER', Primitive.ELLIPSOID: 'SPHERE'}
 
 
-class Form(NamedTuple):
-    """The shape of a marker."""
+class VisualMarker(NamedTuple):
+    """The marker of a visual, or of a part of it."""
 
     type: str
     """The name of a constant of ``visualization_msgs/Marker``: ``CUBE``, ``SPHERE``,
     ``CYLINDER``, ``MESH_RESOURCE`` or ``TRIANGLE_LIST``."""
     scale: tuple[float, ...] = (1.0, 1.0, 1.0)
     """Along x, y and z: metres, but factors for a mesh and triangles."""
-    z_m: float = 0.0
-    """Position of its center on the z axis of the visual."""
+    pose: Pose = Pose()
+    """Its pose in the frame."""
     points: Floats = _NO_POINTS
     """Shape (3 n, 3): the corners of n triangles, one after the other; empty for others."""
     mesh_resource: str = ''
     """The URI of a mesh; empty for others."""
-
-
-class VisualMarker(NamedTuple):
-    """The marker of a visual, or of a part of it."""
-
-    namespace: str
-    """Scoped name of the model, so that RViz can show and hide each."""
-    frame_id: str
+    frame_id: str = ''
     """Frame id of the link, or of its nearest ancestor in TF that is published."""
-    pose: Pose
-    """Pose of the form in this frame."""
-    form: Form
-    rgba: tuple[float, ...] | None
+    namespace: str = ''
+    """Scoped name of the model, so that RViz can show and hide each."""
+    rgba: tuple[float, ...] | None = None
     """Color, each component from 0 to 1; None for the materials of the mesh itself."""
 
 
@@ -91,14 +83,14 @@ def visual_markers_from_scene(
         link = int(scene.parents[element])
         frame = int(tree.nearest_frames[link])
         place = scene.place(element)
-        forms = _forms_from_shape(shape, place.file, finder)
-        if frame == NO_PARENT and not isinstance(forms, str):
-            forms = 'neither its link nor a frame above that in TF is published'
-        if isinstance(forms, str):
-            hidden.setdefault((place.file, place.line, forms), []).append(element)
+        found = _markers_from_shape(shape, place.file, finder)
+        if frame == NO_PARENT and not isinstance(found, str):
+            found = 'neither its link nor a frame above that in TF is published'
+        if isinstance(found, str):
+            hidden.setdefault((place.file, place.line, found), []).append(element)
             continue
-        point_count += sum(len(form.points) for form in forms)
-        if len(markers) + len(forms) > MOST_MARKERS or point_count > MOST_POINTS:
+        point_count += sum(len(marker.points) for marker in found)
+        if len(markers) + len(found) > MOST_MARKERS or point_count > MOST_POINTS:
             msg = (f'the visual "{scene.names[element]}" and all that follow are not shown: there '
                    'are too many')
             problems.warning(msg, place)
@@ -112,9 +104,10 @@ def visual_markers_from_scene(
             tree.frame_ids[frame], int(tree.elements[frame]))
         pose = scene.relative_pose_of(element, reference)
         markers += [
-            VisualMarker(
-                namespace, frame_id, pose_product(pose, Pose(z=form.z_m)), form, shape.drawn_rgba)
-            for form in forms]
+            marker._replace(
+                pose=pose_product(pose, marker.pose), frame_id=frame_id, namespace=namespace,
+                rgba=shape.drawn_rgba)
+            for marker in found]
     for (*_, reason), (element, *others) in hidden.items():
         like = f', like {len(others)} more' if others else ''
         msg = f'the visual "{scene.names[element]}" is not shown{like}: {reason}'
@@ -151,20 +144,21 @@ def markers_from_text(
         resource_finder(request.resource_paths))
 
 
-def _forms_from_shape(
+def _markers_from_shape(
     shape: Shape, file: str, finder: ResourceFinder,
-) -> tuple[Form, ...] | str:
-    """Return the markers of a shape, or the reason why it cannot be shown."""
+) -> list[VisualMarker] | str:
+    """Return the markers of a shape in the frame of its visual, or why it cannot be shown."""
     if shape.type == 'mesh':
         uri = finder.uri_for_others(shape.mesh_uri, file)
         if uri is None:
             return (f'the mesh "{shortened(shape.mesh_uri)}" is not found: '
                     f'{finder.reason_not_found(shape.mesh_uri, file)}')
-        return (Form('MESH_RESOURCE', shape.mesh_scale, mesh_resource=uri),)
+        return [VisualMarker('MESH_RESOURCE', shape.mesh_scale, mesh_resource=uri)]
     if shape.reason_without_surface:
         return shape.reason_without_surface
     if shape.parts:
-        return tuple(
-            Form(_MARKER_TYPES[part.primitive], part.extent_m, part.z_m) for part in shape.parts)
+        return [
+            VisualMarker(_MARKER_TYPES[part.primitive], part.extent_m, Pose(z=part.z_m))
+            for part in shape.parts]
     points_m, faces = shape.surface
-    return (Form('TRIANGLE_LIST', points=points_m[faces.reshape(-1)]),)
+    return [VisualMarker('TRIANGLE_LIST', points=points_m[faces.reshape(-1)])]

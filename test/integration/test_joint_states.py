@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A bridge that follows joint states, beside a process that publishes them and listens."""
 
-from math import isclose, pi
 import signal
 import sys
 
@@ -121,19 +120,6 @@ def test_joints_that_no_message_has_named_are_nowhere_until_their_driver_is_up(
     assert (pose_of(tf, 'tool').z, poses['tool'].pose.position.z) == (2.25, 2.25)
 
 
-def test_a_reload_keeps_what_was_reported(follow, file, joints, tf):
-    follow(watch=False)
-    tf.wait_for('slide', joints.send({'lift': 0.25}))
-    tf.last.clear()
-    replace(file, ARM.format(tool=2))
-    assert reload(tf.listener).success
-    tf.listener.wait(lambda: tf.last.keys() == MOVED, lambda: tf.last)
-    assert (pose_of(tf, 'tool').x, pose_of(tf, 'tool').z) == (2.0, 2.25)
-    replace(file, '<sdf')
-    assert not reload(tf.listener).success
-    assert tf.wait_for('slide', joints.send({'lift': 0.5})).translation.z == 1.5
-
-
 def test_joints_that_do_not_follow_say_once_which_parameter_moves_them(start_bridge, file, tf):
     bridge = start_bridge('--ros-args', '-p', f'sdf_file:={file}').wait_until_started()
     assert reload(tf.listener).success
@@ -142,20 +128,6 @@ def test_joints_that_do_not_follow_say_once_which_parameter_moves_them(start_bri
     assert len(lines) == 1
     assert 'stay where the file puts them' in lines[0]
     assert '2 joints that can move, for example "turn"' in lines[0]
-
-
-def test_frames_follow_a_message(follow, joints, tf):
-    follow()
-    sec = joints.send({'turn': pi / 2, 'lift': 0.25})
-    assert isclose(tf.wait_for('upper', sec).rotation.z, 0.5 ** 0.5)
-    assert tf.wait_for('slide', sec).translation.z == 1.25
-    assert tf.wait_for('finger', sec).translation.x == 0.5
-    tool = pose_of(tf, 'arm::tool')
-    assert (round(tool.x, 9), round(tool.y, 9), tool.z) == (0.0, 1.0, 2.25)
-    # The message does not name all joints.
-    assert tf.wait_for('upper', joints.send({'arm::turn': 0.0})).rotation.z == 0.0
-    assert tf.last['slide'].header.stamp.sec == sec
-    assert pose_of(tf, 'slide').z == 2.25
 
 
 def test_a_flood_of_messages_does_not_keep_callers_waiting(follow, tf):

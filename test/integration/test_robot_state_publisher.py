@@ -120,16 +120,9 @@ def test_a_file_of_parameters_is_taken_with_all_its_names(start, listener, tmp_p
     assert not [line for line in program.lines if line.startswith('[WARN]')]
 
 
-def test_the_stamps_of_messages_can_be_ignored(start, listener, joints, tmp_path, tf):
-    file = tmp_path / 'parameters.yaml'
-    file.write_text(PARAMETERS.format(text=URDF, ignores='true'), encoding='utf-8')
-    start('--ros-args', '--params-file', file, '-p', 'publish_frequency:=0.001')
-    listener.wait(lambda: joints.send({'turn': 0.5}) and tf['/tf'], lambda: 'the first message')
-    for _ in range(3):
-        joints.send({'turn': 0.5}, sec=7)
-    listener.wait(
-        lambda: [each.transforms[0].header.stamp.sec for each in tf['/tf']].count(7) == 3,
-        lambda: tf['/tf'])
+def test_a_misspelt_parameter_is_reported(start, file):
+    program = start(file, '--ros-args', '-p', 'frame_prefx:=left/')
+    program.wait_for_line('there is no parameter "frame_prefx"')
 
 
 def test_sdformat_has_links_frames_and_sensors_and_its_joints_move(start, listener, joints, tf):

@@ -120,18 +120,6 @@ def test_one_coroutine_holds_a_lock_at_a_time(node):
     assert lock._released is None
 
 
-def test_a_lock_is_released_by_an_exception(node):
-    lock = CoroutineLock(node)
-
-    async def fail():
-        with pytest.raises(ZeroDivisionError):
-            async with lock:
-                raise ZeroDivisionError
-
-    finished(node, fail)
-    assert lock._released is None
-
-
 def test_a_lock_is_released_when_python_ends_after_the_executor(node):
     lock = CoroutineLock(node)
 

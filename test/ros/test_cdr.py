@@ -26,6 +26,7 @@ ROWS = st.lists(st.tuples(NAMES, NAMES, NUMBERS), max_size=6)
 LENGTHS = st.integers(0, 9).map('n'.__mul__)
 STAMP = 1_000_000_002
 POSITIONS = st.lists(st.floats(allow_nan=False), max_size=5)
+NAMED_POSITIONS = st.lists(st.tuples(NAMES, st.floats(allow_nan=False)), max_size=5)
 
 
 def columns(rows):
@@ -181,24 +182,27 @@ def test_another_encoding_is_refused():
         joint_state_from_bytes(b'\0\3' + joint_state(['a'], [1.0])[2:])
 
 
-@given(st.lists(NAMES, max_size=5), POSITIONS, NAMES, st.integers(0, 2**31 - 1), POSITIONS)
-def test_content_is_that_of_the_message(names, positions, frame_id, sec, velocities):
+@given(NAMED_POSITIONS, NAMES, STAMPS, POSITIONS)
+def test_content_is_that_of_the_message(named, frame_id, stamp_ns, velocities):
+    names, positions = list(zip(*named, strict=True)) or ((), ())
+    sec, nanosec = divmod(stamp_ns, 10**9)
     data = joint_state(
-        names, positions, frame_id=frame_id, sec=sec, nanosec=sec // 3, velocities=velocities)
+        names, positions, frame_id=frame_id, sec=sec, nanosec=nanosec, velocities=velocities)
     stamp, found, values = joint_state_from_bytes(data)
-    assert stamp == (sec, sec // 3)
-    assert list(found.names) == names
+    assert stamp == stamp_ns
+    assert found.names == names
     np.testing.assert_array_equal(values, positions)
     _, again, values = joint_state_from_bytes(data, found)
     assert again is found
     np.testing.assert_array_equal(values, positions)
 
 
-@given(st.lists(NAMES, min_size=1, max_size=5), st.lists(NAMES, max_size=5), POSITIONS)
-def test_names_of_another_message_do_not_mislead(known, names, positions):
-    _, before, _ = joint_state_from_bytes(joint_state(known, []))
+@given(st.lists(NAMES, min_size=1, max_size=5), NAMED_POSITIONS)
+def test_names_of_another_message_do_not_mislead(known, named):
+    names, positions = list(zip(*named, strict=True)) or ((), ())
+    _, before, _ = joint_state_from_bytes(joint_state(known, [0.0] * len(known)))
     _, found, values = joint_state_from_bytes(joint_state(names, positions), before)
-    assert list(found.names) == names
+    assert found.names == names
     np.testing.assert_array_equal(values, positions)
 
 
@@ -211,4 +215,4 @@ def test_big_endian_is_read():
     header_and_names = struct.pack('>iII4xII2s2x', 7, 8, 1, 1, 2, b'j\0')
     data = b'\0\0\0\0' + header_and_names + struct.pack('>Id', 1, 2.5)
     stamp, names, positions = joint_state_from_bytes(data)
-    assert (stamp, names.names, positions.tolist()) == ((7, 8), ('j',), [2.5])
+    assert (stamp, names.names, positions.tolist()) == (7_000_000_008, ('j',), [2.5])

@@ -9,11 +9,20 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
+from rcl_interfaces.srv import (
+    DescribeParameters,
+    GetParameters,
+    GetParameterTypes,
+    ListParameters,
+    SetParameters,
+    SetParametersAtomically,
+)
 from rclpy.parameter import Parameter
 
 from sdf_pose_bridge.ros.given_parameters import (
     changed_settings,
     parameter_with_type,
+    restrict_parameter_services,
     settings_from_node,
     settings_from_values,
     warnings_about_unknown_parameters,
@@ -259,3 +268,46 @@ def test_a_value_with_the_same_meaning_is_converted(type_, value, wanted, conver
     found = parameter_with_type(Parameter('p', type_, value), wanted)
     assert (found.name, found.type_, found.value) == ('p', wanted, converted)
     assert type(found.value) is type(converted)
+
+
+# Services
+
+@pytest.fixture(name='services')
+def restricted_services(make_node):
+    node = make_node('bridge')
+    node.declare_parameter('a', 3.5)
+    node.declare_parameter('b', ['x', 'y'])
+    restrict_parameter_services(node)
+    return {service.srv_type: service for service in node.services}
+
+
+def test_those_that_set_parameters_are_removed(services):
+    assert SetParameters not in services
+    assert SetParametersAtomically not in services
+    assert ListParameters in services
+
+
+@pytest.mark.parametrize(('service_type', 'field'), [
+    (DescribeParameters, 'descriptors'), (GetParameters, 'values'), (GetParameterTypes, 'types')])
+@pytest.mark.parametrize(('names', 'count'), [(['a', 'b'], 2), (['a'], 1), (['a', 'a'], 0)])
+def test_a_name_that_is_repeated_gets_nothing(services, service_type, field, names, count):
+    response = services[service_type].callback(
+        service_type.Request(names=names), service_type.Response())
+    assert len(getattr(response, field)) == count
+
+
+# Quality of service
+
+@pytest.mark.parametrize(('policy', 'value', 'rule'), [
+    ('reliability', 'sometimes', 'one of system_default, reliable, best_effort'),
+    ('durability', 3, 'one of system_default, transient_local, volatile'),
+    ('history', 'all', 'one of system_default, keep_last, keep_all'),
+    ('depth', 'many', 'an integer from 0 to 2147483647'),
+    ('depth', -1, 'an integer from 0 to 2147483647'),
+    ('depth', 2**31, 'an integer from 0 to 2147483647'),
+])
+def test_a_value_that_no_policy_has_ends_the_start(make_node, policy, value, rule):
+    node = make_node(
+        'bridge', '-p', 'sdf_file:=a.sdf', '-p', f'qos_overrides./tf.publisher.{policy}:={value}')
+    with pytest.raises(SettingsError, match=f'.{policy} is {value}; it must be {rule}'):
+        settings_from_node(node)

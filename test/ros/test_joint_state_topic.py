@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""What is read of messages on one topic of several."""
+"""What is read of messages on one topic of several, and what their names mean."""
 
 import time
 
@@ -15,11 +15,16 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
 
 from sdf_pose_bridge import load_text
-from sdf_pose_bridge.ros.joint_names import Meanings
-from sdf_pose_bridge.ros.joint_state_topic import JointStateTopic
+from sdf_pose_bridge.ros.cdr import SerializedNames
+from sdf_pose_bridge.ros.joint_state_topic import (
+    BYTES_OF_OBJECTS,
+    JointStateTopic,
+    Meanings,
+    MOST_BYTES,
+)
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
-from sdf_pose_bridge.tf.joint_positions import JointPositions
+from sdf_pose_bridge.tf.joint_positions import JointPositions, UnreportedJoints
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 ROBOT = f"""<model name="{{}}"><link name="base"/><link name="upper"/><link name="finger"/>
@@ -30,21 +35,36 @@ ROBOT = f"""<model name="{{}}"><link name="base"/><link name="upper"/><link name
 </model>"""
 
 
+class Robots:
+    """Two robots, ``a`` and ``b``, and what messages about them mean."""
+
+    def __init__(self, node, unreported):
+        scene = load_text(world_file(ROBOT.format('a') + ROBOT.format('b')))
+        tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
+        self._node = node
+        self.positions = JointPositions(scene, tree.moving.dofs, unreported=unreported)
+        self.meanings = Meanings(
+            PublishedFrames(Publishers(node), tree, self.positions, {}).moving)
+
+    def topic(self, name='a/j', model='a'):
+        return JointStateTopic(self._node, name, model)
+
+
+@pytest.fixture(name='robots')
+def make_robots(make_node):
+    return Robots(make_node('bridge'), UnreportedJoints.NONE)
+
+
 @pytest.fixture(name='read')
-def make_read(make_node):
+def make_read(robots):
     """Reads a message on the topic of the robot ``a`` of two; ``read(data)``."""
-    node = make_node('bridge')
-    scene = load_text(world_file(ROBOT.format('a') + ROBOT.format('b')))
-    tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
-    positions = JointPositions(scene, tree.moving.dofs)
-    meanings = Meanings(PublishedFrames(Publishers(node), tree, positions, {}).moving)
-    topic = JointStateTopic(node, 'a/j', 'a')
+    topic = robots.topic()
 
     def read(data):
-        message = topic.read(data, meanings)
+        message = topic.read(data, robots.meanings)
         if message is None:
             return None
-        names = [positions.names[dof] for dof in message.meaning.selection.dofs]
+        names = [robots.positions.names[dof] for dof in message.meaning.selection.dofs]
         return names, message.positions.tolist(), message.stamp_ns
     return read
 
@@ -82,7 +102,44 @@ def test_a_name_of_another_model_is_reported_with_the_model(read, capfd):
         log += capfd.readouterr().err
 
 
-def test_the_same_names_are_looked_up_once_whatever_aligns_them(read):
+def test_names_are_kept_for_all_topics_of_a_model_whatever_aligns_them(robots):
+    first, second, other = (
+        robots.topic(*each) for each in (('a/j', 'a'), ('a/k', 'a'), ('b/j', 'b')))
     data = joint_state(turn=0.5, grip=0.25)
     begin = data.index(b'turn\0') + 5
-    assert read(data) == read(data[:begin] + b'abc' + data[begin + 3:]) == read(data)
+    meanings = [
+        topic.read(each, robots.meanings).meaning for topic, each in (
+            (first, data), (first, data[:begin] + b'abc' + data[begin + 3:]), (second, data),
+            (first, joint_state(turn=0.5)), (first, data), (other, data))]
+    kept = meanings[0]
+    assert [each is kept for each in meanings] == [True, True, True, False, True, False]
+
+
+@pytest.mark.parametrize('unreported', list(UnreportedJoints))
+def test_names_move_their_transforms_and_those_of_joints_at_zero(make_node, unreported):
+    robots = Robots(make_node('bridge'), unreported)
+
+    def rows(*names):
+        data = joint_state(**dict.fromkeys(names, 0.0))
+        message = robots.topic('j', '').read(data, robots.meanings)
+        robots.positions.update(message.meaning.selection, message.positions, 5)
+        return robots.meanings.rows(message.meaning).tolist()
+
+    at_zero = unreported is UnreportedJoints.ZERO
+    assert rows('a/turn', 'x') == ([0, 1, 2, 3] if at_zero else [0])
+    assert rows('b/turn', 'b/grip') == ([1, 2, 3] if at_zero else [2, 3])
+    assert rows('a/grip') == [1]
+    assert rows('a/turn', 'x') == [0]
+    assert rows('x') == []
+
+
+@pytest.mark.parametrize('size', [MOST_BYTES // 10, 1])
+def test_all_names_together_take_a_limited_number_of_bytes(robots, size):
+    topic, meanings = robots.topic(), set()
+    count = 2 * MOST_BYTES // (size + BYTES_OF_OBJECTS)
+    for _ in range(2):
+        for number in range(count):
+            names = SerializedNames((str(number) * size,), b'x' * size)
+            meanings.add(robots.meanings.find(names, topic)[0])
+            assert robots.meanings.last(topic).names is names
+    assert len(meanings) > 1.5 * count

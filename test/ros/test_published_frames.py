@@ -4,17 +4,27 @@
 
 import time
 
+import numpy as np
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from geometry_msgs.msg import PoseStamped, TransformStamped
-from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.qos import (
+    DurabilityPolicy,
+    qos_profile_sensor_data,
+    QoSProfile,
+    ReliabilityPolicy,
+)
+from tf2_msgs.msg import TFMessage
 from tf_checks import tree_of
 
 from sdf_pose_bridge import load_text
+from sdf_pose_bridge.ros.joint_states import JointStates
+from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
+from sdf_pose_bridge.ros.topic_names import JointStateTopics
 from sdf_pose_bridge.tf.joint_positions import JointPositions, UnreportedJoints
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
@@ -92,6 +102,11 @@ def frames_of_arm(publishers, before=None, unreported=UnreportedJoints.ZERO, pos
         {'upper': 'upper', 'base': 'base'}, before)
 
 
+def report_position(frames, stamp_ns):
+    positions = frames.moving.positions
+    positions.update(positions.selection(['turn']), np.zeros(1), stamp_ns)
+
+
 @pytest.fixture(name='poses')
 def listen_to_poses(node, make_node):
     """The names and stamps of the poses that arrive."""
@@ -136,7 +151,7 @@ def test_moving_frames_are_not_published_with_the_fixed_ones(node, poses):
 def test_poses_have_the_stamps_of_the_tree_and_of_the_joints(node, poses):
     publishers = Publishers(node)
     frames = frames_of_arm(publishers)
-    frames.moving.positions.stamps_ns[:] = 5_000_000_006
+    report_position(frames, 5_000_000_006)
     # The time of the node goes on before anything is published.
     assert frames.stamp_ns < publishers.now_ns()
     publish_topics(node, frames)
@@ -147,11 +162,24 @@ def test_poses_have_the_stamps_of_the_tree_and_of_the_joints(node, poses):
 
 def test_poses_in_a_frame_that_moves_have_the_stamp_of_its_joints(node, poses):
     frames = frames_of_arm(Publishers(node), pose_frame='upper')
-    frames.moving.positions.stamps_ns[:] = 5_000_000_006
+    report_position(frames, 5_000_000_006)
     publish_topics(node, frames)
     wait_until(node, lambda: 'base' in dict(poses), poses)
     stamp = dict(poses)['base']
     assert (stamp.sec, stamp.nanosec) == (5, 6)
+
+
+def test_what_waits_for_tf_keeps_its_stamp_while_topics_are_published(node, poses):
+    frames, found = frames_of_arm(Publishers(node)), []
+    report_position(frames, 5_000_000_006)
+    node.create_subscription(TFMessage, '/tf', found.append, 10)
+    rows = frames.moving.stamp(np.array([0]), 7_000_000_008)
+    publish_topics(node, frames)
+    wait_until(node, lambda: 'upper' in dict(poses), poses)
+    frames.moving.publish_tf(rows)
+    wait_until(node, lambda: found, found)
+    stamp = found[0].transforms[0].header.stamp
+    assert (stamp.sec, stamp.nanosec) == (7, 8)
 
 
 def test_what_a_joint_without_a_position_moves_is_not_published(node, poses):
@@ -161,7 +189,7 @@ def test_what_a_joint_without_a_position_moves_is_not_published(node, poses):
     publish_topics(node, before)
     wait_until(node, lambda: 'base' in dict(poses), poses)
     assert 'upper' not in dict(poses)
-    before.moving.positions.is_reported[:] = True
+    report_position(before, 5_000_000_006)
     before.moving.publish_topics(only_listeners=False)
     wait_until(
         node, lambda: 'upper' in dict(poses)
@@ -169,14 +197,42 @@ def test_what_a_joint_without_a_position_moves_is_not_published(node, poses):
     assert [each.child_frame_id for each in transforms].count('upper') == 1
 
 
-def test_tf_has_the_quality_of_service_of_tf2_ros(node):
-    frames_of_arm(Publishers(node))
+def qualities(node):
+    """Publish the frames of an arm; return the quality of service of each topic."""
+    frames = frames_of_arm(Publishers(node))
+    states = JointStates(
+        node, frames.moving, JointStateTopics({'joint_states': ''}),
+        Settings({'publish_frequency': 0.0, 'ignore_timestamp': False}))
     found = {
-        publisher.topic_name: publisher.qos_profile for publisher in node.publishers
-        if publisher.topic_name.startswith('/tf')}
-    assert {name: (quality.depth, quality.durability) for name, quality in found.items()} == {
-        '/tf': (100, DurabilityPolicy.VOLATILE),
-        '/tf_static': (1, DurabilityPolicy.TRANSIENT_LOCAL)}
+        each.topic_name: each.qos_profile for each in [*node.publishers, *node.subscriptions]}
+    states.end()
+    return found
+
+
+def test_policies_are_those_of_tf2_ros_and_declared(make_node):
+    node = make_node('bridge')
+    found = qualities(node)
+    assert (found['/tf'].depth, found['/tf'].durability) == (100, DurabilityPolicy.VOLATILE)
+    assert (found['/tf_static'].depth, found['/tf_static'].durability) == (
+        1, DurabilityPolicy.TRANSIENT_LOCAL)
+    assert found['/joint_states'].reliability is ReliabilityPolicy.BEST_EFFORT
+    assert node.get_parameter('qos_overrides./tf.publisher.depth').value == 100
+    assert node.get_parameter(
+        'qos_overrides./joint_states.subscription.reliability').value == 'best_effort'
+
+
+def test_policies_are_overridden_under_the_remapped_name(make_node):
+    node = make_node(
+        'bridge', '-r', '/tf:=/r1/tf', '-p', 'qos_overrides./r1/tf.publisher.depth:=7',
+        '-p', 'qos_overrides./tf_static.publisher.reliability:=best_effort',
+        '-p', 'qos_overrides./joint_states.subscription.reliability:=reliable',
+        '-p', 'qos_overrides./joint_states.subscription.durability:=transient_local')
+    found = qualities(node)
+    assert found['/r1/tf'].depth == 7
+    assert found['/tf_static'].reliability is ReliabilityPolicy.BEST_EFFORT
+    assert found['/joint_states'].reliability is ReliabilityPolicy.RELIABLE
+    assert found['/joint_states'].durability is DurabilityPolicy.TRANSIENT_LOCAL
+    assert qos_profile_sensor_data.reliability is ReliabilityPolicy.BEST_EFFORT, 'for others'
 
 
 def test_many_topics_are_made_between_other_callbacks(publish, node):

@@ -13,7 +13,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import String
 
 from sdf_pose_bridge.ros import publishers as publishers_module
-from sdf_pose_bridge.ros.publishers import Publishers, TextPublisher, Topic
+from sdf_pose_bridge.ros.publishers import Publishers, SwitchedPublisher, Topic
 
 
 @pytest.fixture(name='publishers')
@@ -71,19 +71,20 @@ def test_more_publishers_than_were_measured_cause_one_warning(
     assert capfd.readouterr().err.count('3 publishers are more than 2') == 1
 
 
-def test_each_text_is_published_and_nothing_without_one(node):
+def test_a_publisher_that_is_switched_off_leaves_no_message(node):
     quality = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     received, sent = [], []
     node.create_subscription(
-        String, 'robot_description', lambda message: received.append(message.data), quality)
-    publisher = TextPublisher(node, 'robot_description')
-    for text in ('<robot/>', '<robot/>', '', '<robot name="r"/>'):
-        publisher.publish(text)
-        assert node.count_publishers('robot_description') == bool(text)
+        String, 'text', lambda message: received.append(message.data), quality)
+    publisher = SwitchedPublisher(node, Topic('text', String))
+    for text in ('a', 'b', '', 'c'):
+        publisher.switch(on=bool(text))
+        publisher.publish(String(data=text))
+        assert node.count_publishers('text') == bool(text)
         if text:
             sent.append(text)
             deadline = time.monotonic() + 20
-            while len(received) < len(sent):
+            while len(received) < len(sent) or not publisher.has_listeners():
                 assert time.monotonic() < deadline
                 node.executor.spin_once(timeout_sec=0.1)
     assert received == sent

@@ -23,7 +23,7 @@ from sdf_pose_bridge.ros.services import (
     answer_to_convert_poses,
     answer_to_convert_rotation,
     answer_to_lookup_pose,
-    never_raising,
+    response_from_answer,
     set_pose,
 )
 from sdf_pose_bridge.scene.loading import load_text
@@ -35,7 +35,7 @@ from sdf_pose_bridge_interfaces.srv import ConvertPoses, ConvertRotation, Lookup
 
 
 def answered(answer, request, response):
-    return never_raising(answer, get_logger('bridge').error)(request, response)
+    return response_from_answer(answer, request, response, get_logger('bridge').error)
 
 
 def convert_rotation(given=0, rpy=(0.0, 0.0, 0.0), quat_xyzw=(0.0, 0.0, 0.0, 1.0), degrees=False):

@@ -17,7 +17,7 @@ from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.ros.visuals import message_from_markers, VisualPublisher
 from sdf_pose_bridge.tf.loaded_scene import LoadRequest
 from sdf_pose_bridge.tf.loading import loaded_scene_from_request
-from sdf_pose_bridge.tf.visual_markers import Form, VisualMarker
+from sdf_pose_bridge.tf.visual_markers import VisualMarker
 
 SDF = """<sdf version="1.10"><model name="m"><link name="l">
 <visual name="v"><geometry><{shape}/></geometry></visual></link></model></sdf>"""
@@ -31,12 +31,12 @@ def sent(*markers):
     return deserialize_message(serialize_message(message), MarkerArray).markers
 
 
-def marker(form, rgba=BLUE):
-    return VisualMarker('a::b', 'a/b/link', POSE, form, rgba)
+def marker(*values, rgba=BLUE, **others):
+    return VisualMarker(*values, rgba=rgba, frame_id='a/b/link', namespace='a::b', **others)
 
 
-def only_sent(form, rgba=BLUE):
-    _, message = sent(marker(form, rgba))
+def only_sent(*values, **others):
+    _, message = sent(marker(*values, **others))
     return message
 
 
@@ -46,7 +46,7 @@ def test_earlier_markers_are_deleted_first():
 
 
 def test_marker_moves_with_its_frame():
-    message = only_sent(Form('CUBE', (1.0, 2.0, 3.0)))
+    message = only_sent('CUBE', (1.0, 2.0, 3.0), POSE)
     assert (message.action, message.frame_locked) == (Marker.ADD, True)
     assert (message.header.frame_id, message.ns) == ('a/b/link', 'a::b')
     assert (message.header.stamp.sec, message.header.stamp.nanosec) == (0, 0)
@@ -56,14 +56,14 @@ def test_marker_moves_with_its_frame():
 
 
 def test_each_marker_has_an_id_of_its_own():
-    messages = sent(*(marker(Form('CUBE')) for _ in range(3)))
+    messages = sent(*(marker('CUBE') for _ in range(3)))
     assert len({each.id for each in messages}) == 4
 
 
 @pytest.mark.parametrize(('name', 'number'), [
     ('CUBE', Marker.CUBE), ('SPHERE', Marker.SPHERE), ('CYLINDER', Marker.CYLINDER)])
 def test_shape_has_its_type_scale_and_color(name, number):
-    message = only_sent(Form(name, (1.0, 2.0, 3.0)))
+    message = only_sent(name, (1.0, 2.0, 3.0))
     assert message.type == number
     assert (message.scale.x, message.scale.y, message.scale.z) == (1.0, 2.0, 3.0)
     color = message.color
@@ -72,19 +72,19 @@ def test_shape_has_its_type_scale_and_color(name, number):
 
 
 def test_triangles_are_their_corners():
-    message = only_sent(Form('TRIANGLE_LIST', points=TRIANGLE))
+    message = only_sent('TRIANGLE_LIST', points=TRIANGLE)
     assert message.type == Marker.TRIANGLE_LIST
     assert [[each.x, each.y, each.z] for each in message.points] == TRIANGLE.tolist()
 
 
 def test_mesh_with_a_color():
-    message = only_sent(Form('MESH_RESOURCE', mesh_resource='file:///a.stl'))
+    message = only_sent('MESH_RESOURCE', mesh_resource='file:///a.stl')
     assert (message.type, message.mesh_resource) == (Marker.MESH_RESOURCE, 'file:///a.stl')
     assert (message.color.b, message.mesh_use_embedded_materials) == (1.0, False)
 
 
 def test_mesh_without_a_color_keeps_its_own():
-    message = only_sent(Form('MESH_RESOURCE', mesh_resource='file:///a.dae'), rgba=None)
+    message = only_sent('MESH_RESOURCE', mesh_resource='file:///a.dae', rgba=None)
     color = message.color
     assert (color.r, color.g, color.b, color.a) == (0.0, 0.0, 0.0, 0.0)
     assert message.mesh_use_embedded_materials

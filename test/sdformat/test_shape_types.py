@@ -123,8 +123,8 @@ def test_marker_extends_as_far_as_the_surface(name):
         scene, tf_tree_from_scene(scene), '', resource_finder((), {}))
     assert warnings == ()
     ends = [
-        form.points if len(form.points) else ends_of(form.scale, form.z_m)
-        for form in (marker.form for marker in markers)]
+        marker.points if len(marker.points) else ends_of(marker.scale, marker.pose.z)
+        for marker in markers]
     np.testing.assert_allclose(
         extent_of(np.concatenate(ends)), extent_of(surface_of(name)[0]), rtol=1e-12)
 

@@ -104,11 +104,11 @@ def test_the_models_are_those_that_are_published():
     assert positions_of(world_file(model('x') + model('y')), model='y').models == ('y',)
 
 
-def test_degrees_of_freedom_beside_others_are_those_of_their_model():
+def test_a_message_about_a_joint_is_one_about_all_joints_of_its_model():
     second = joint('<parent>b</parent><child>c</child>', 'k', 'revolute')
     positions = positions_of(world_file(model('x', second) + model('y')))
-    assert positions.selection(['x/k']).beside.tolist() == [0, 1]
-    assert positions.selection([]).beside.tolist() == []
+    update(positions, 5, **{'x/k': 0.5})
+    assert positions.stamps_ns.tolist() == [5, 5, -1]
 
 
 def test_the_second_joint_that_a_screw_joint_has_in_urdf_is_not_unknown():

@@ -117,8 +117,8 @@ def test_number_of_points_is_limited(monkeypatch):
 ])
 def test_shape_that_rviz_has(geometry, kind, scale):
     marker = only_marker(visual(geometry))
-    assert (marker.form.type, marker.form.scale, marker.form.mesh_resource) == (kind, scale, '')
-    assert len(marker.form.points) == 0
+    assert (marker.type, marker.scale, marker.mesh_resource) == (kind, scale, '')
+    assert len(marker.points) == 0
 
 
 def test_mesh_beside_the_file_is_named_by_its_path(tmp_path):
@@ -127,8 +127,8 @@ def test_mesh_beside_the_file_is_named_by_its_path(tmp_path):
     (folder / 'a.stl').touch()
     marker = only_marker(
         visual(MESH.format('a.stl', '<scale>1 2 -3</scale>')), file=folder / 'm.sdf')
-    assert (marker.form.type, marker.form.scale) == ('MESH_RESOURCE', (1, 2, -3))
-    assert marker.form.mesh_resource == f'file://{tmp_path}/my%20robot%20%231/a.stl'
+    assert (marker.type, marker.scale) == ('MESH_RESOURCE', (1, 2, -3))
+    assert marker.mesh_resource == f'file://{tmp_path}/my%20robot%20%231/a.stl'
 
 
 def test_mesh_beside_a_file_with_a_relative_path_is_named_by_its_absolute_path(
@@ -136,7 +136,7 @@ def test_mesh_beside_a_file_with_a_relative_path_is_named_by_its_absolute_path(
     monkeypatch.chdir(tmp_path)
     Path('a.stl').touch()
     marker = only_marker(visual(MESH.format('a.stl', '')), file='m.sdf')
-    assert marker.form.mesh_resource == (tmp_path / 'a.stl').as_uri()
+    assert marker.mesh_resource == (tmp_path / 'a.stl').as_uri()
 
 
 @pytest.mark.parametrize('uri', ['model://arm/meshes/a.dae', 'package:///arm/meshes/a.dae'])
@@ -146,19 +146,19 @@ def test_mesh_of_a_model_is_found_in_the_resource_paths(uri, tmp_path):
     mesh.touch()
     marker = only_marker(
         visual(MESH.format(uri, '')), resource_paths=[tmp_path])
-    assert marker.form.mesh_resource == mesh.as_uri()
+    assert marker.mesh_resource == mesh.as_uri()
 
 
 def test_mesh_of_a_package_keeps_its_uri():
     marker = only_marker(visual(MESH.format('package://none/a.stl', '')))
-    assert marker.form.mesh_resource == 'package://none/a.stl'
+    assert marker.mesh_resource == 'package://none/a.stl'
 
 
 def test_part_of_a_mesh_is_shown_whole_with_a_warning():
     submesh = '<submesh><name>lid</name></submesh>'
     (marker,), (warning,) = markers_and_warnings(
         link_with(visual(MESH.format('package://a/a.dae', submesh))))
-    assert marker.form.type == 'MESH_RESOURCE'
+    assert marker.type == 'MESH_RESOURCE'
     assert 'instead of its part "lid"' in str(warning)
 
 
@@ -260,4 +260,4 @@ def test_shapes_with_an_include_that_has_changed_are_refused(reread, text):
 
 def test_shapes_are_those_of_the_text_that_was_read(reread):
     (marker,), warnings = reread(WITH_SHAPE)
-    assert (marker.form.type, marker.frame_id, warnings) == ('CUBE', 'm/l', ())
+    assert (marker.type, marker.frame_id, warnings) == ('CUBE', 'm/l', ())
