@@ -46,6 +46,7 @@ def arrows_to(name, dot):
     ('good.sdf --model n', 1, 'there is no model "n"'),
     ('good.sdf -o nowhere/graph.dot', 1, 'sdf_pose graph: cannot write nowhere/graph.dot: '),
     ('good.sdf -o graph.gif', 2, '"graph.gif" must end with one of .svg, .png, .pdf, .dot'),
+    ('good.sdf bad.sdf', 2, 'unrecognized arguments: bad.sdf'),
 ])
 def test_wrong_input_gives_one_error(run_main, arguments, code, reason):
     done = run_main('graph', *arguments.split())
