@@ -1,10 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-A topic of joint states: its subscription, and what its messages mean.
-
-What the names in a message mean is kept for messages with the same names.
-"""
+"""A topic of joint states: its subscription, and what its messages mean."""
 
 from __future__ import annotations
 
@@ -65,7 +61,7 @@ class Message(NamedTuple):
 
 class Meanings:
     """
-    The meanings of the names on all topics.
+    The meanings of the names on all topics, kept for messages with the same names.
 
     :param frames: the frames that messages move.
     """
@@ -73,14 +69,11 @@ class Meanings:
     def __init__(self, frames: PublishedMovingFrames) -> None:
         self.positions = frames.positions
         self._frames = frames
-        # By the model and the names, and the last one of each topic.
+        # By the model and the names.
         self._meanings: dict[tuple[str, tuple[str, ...]], Meaning] = {}
-        self._last: dict[str, Meaning] = {}
+        self.last: dict[str, Meaning] = {}
+        """The meaning of the names in the last message on each topic, as far as it is kept."""
         self._size = 0
-
-    def last(self, topic: JointStateTopic) -> Meaning | None:
-        """Return the meaning of the names in the last message on a topic, if it is kept."""
-        return self._last.get(topic.name)
 
     def find(self, names: SerializedNames, topic: JointStateTopic) -> tuple[Meaning, list[str]]:
         """
@@ -96,18 +89,14 @@ class Meanings:
             unknown = self.positions.unknown(names.names, topic.model)
             self._make_room(BYTES_OF_OBJECTS + len(names.data))
             self._meanings[topic.model, names.names] = found
-        self._last[topic.name] = found
+        self.last[topic.name] = found
         return found, unknown
 
     def rows(self, meaning: Meaning) -> NDArray[np.intp]:
         """Return the transforms that the names move, and those of joints at zero."""
-        positions = self.positions
-        if meaning.reported_count != positions.reported_count and len(meaning.selection.dofs):
-            meaning.reported_count = positions.reported_count
-            is_changed = positions.is_known & ~positions.is_reported
-            is_changed[meaning.selection.changed] = True
-            meaning.rows = np.flatnonzero(
-                self._frames.frames.depends_on(is_changed) & self._frames.has_transform)
+        if meaning.reported_count != self.positions.reported_count and meaning.selection.changed:
+            meaning.reported_count = self.positions.reported_count
+            meaning.rows = self._frames.rows_from_dofs(meaning.selection.changed)
             self._make_room(meaning.rows.nbytes)
         return meaning.rows
 
@@ -116,7 +105,7 @@ class Meanings:
         self._size += size
         if self._size > MOST_BYTES:
             self._meanings.clear()
-            self._last.clear()
+            self.last.clear()
             self._size = size
 
 
@@ -164,7 +153,7 @@ class JointStateTopic:
 
     def read(self, data: bytes, meanings: Meanings) -> Message | None:
         """Read a serialized message; return None with a warning if it cannot be used."""
-        meaning = meanings.last(self)
+        meaning = meanings.last.get(self.name)
         try:
             stamp_ns, names, positions = joint_state_from_bytes(
                 data, None if meaning is None else meaning.names)

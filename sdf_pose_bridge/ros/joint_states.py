@@ -97,8 +97,8 @@ class JointStates:
         self._warnings: tuple[str, ...] = ()
         self._wait_set = WaitSet(node.context)
         self._target = self._next_target = _Target(frames, (), settings)
-        self._callers: deque[Future] = deque()
-        self._has_to_publish_topics = False
+        # The thread makes them when it has processed the messages that came before.
+        self._calls: deque[Callable[[], object]] = deque()
         self._has_to_end = False
         # The thread alone changes everything else. First, what is due at some monotonic time.
         self._due: dict[Callable[[], None], float] = {}
@@ -138,13 +138,13 @@ class JointStates:
 
     def publish_topics(self) -> None:
         """Publish all moving frames on ``~/transforms`` and ``~/poses/...`` soon."""
-        self._has_to_publish_topics = True
+        self._calls.append(lambda: self._due.update({self._publish_at_rest: 0.0}))
         self._wake()
 
     def catch_up(self) -> Future:
         """Return a future that is done when all calls and messages so far are processed."""
         future = Future()
-        self._callers.append(future)
+        self._calls.append(lambda: future.set_result(None))
         self._wake()
         return future
 
@@ -204,16 +204,16 @@ class JointStates:
                     f'internal error in joint states: {error}\n{traceback.format_exc()}',
                     throttle_duration_sec=60.0)
         self._wait_set.close()
-        self._answer(len(self._callers))
+        self._make_calls(len(self._calls))
 
     def _turn(self) -> None:
         """Wait once, and do what is due."""
         with self._node.handle:
             pass  # the wait set would not notice that the node was destroyed
-        caller_count = len(self._callers)
+        call_count = len(self._calls)
         ready = self._wait_set.wait(
             [each.subscription for each in self._awaited],
-            0.0 if caller_count else self._longest_wait())
+            0.0 if call_count else self._longest_wait())
         if self._target is not self._next_target:
             self._follow_next_target()
             return  # the messages are ready again
@@ -222,15 +222,12 @@ class JointStates:
             self._has_jumped or self._now_ns >= self._period_ends_ns)
         if ready and not has_ended:
             self._take([self._awaited[index] for index in ready], at_once=True)
-        if self._is_in_period and (has_ended or caller_count or not ready):
+        if self._is_in_period and (has_ended or call_count or not ready):
             self._take(self._target.topics, at_once=False)
         if has_ended:
             self._end_period()
-        self._answer(caller_count)
+        self._make_calls(call_count)
         now = time.monotonic()
-        if self._has_to_publish_topics:
-            self._has_to_publish_topics = False
-            self._due[self._publish_at_rest] = now
         for function in [each for each, due in self._due.items() if due <= now]:
             del self._due[function]
             function()
@@ -243,9 +240,9 @@ class JointStates:
                 else (self._period_ends_ns - time.time_ns()) / NANOSECONDS)
         return max(seconds, 0.0)
 
-    def _answer(self, count: int) -> None:
+    def _make_calls(self, count: int) -> None:
         for _ in range(count):
-            self._callers.popleft().set_result(None)
+            self._calls.popleft()()
         if count:
             wake(self._node.executor)
 
@@ -274,9 +271,8 @@ class JointStates:
         """Publish what has waited, if anything has; otherwise publish the next message at once."""
         rows, self._waiting = self._waiting, _NO_ROWS
         self._period_ends_ns, self._awaited = math.inf, self._target.topics
-        if len(rows):
-            silent_ns = self._now_ns - max(2.0 * self._target.period_ns, SILENCE_NS)
-            self._publish(rows, [each for each in self._awaited if each.last_ns < silent_ns])
+        silent_ns = self._now_ns - max(2.0 * self._target.period_ns, SILENCE_NS)
+        self._publish(rows, [each for each in self._awaited if each.last_ns < silent_ns])
 
     # Messages
 
@@ -295,10 +291,10 @@ class JointStates:
         while topics and time.monotonic() < ends_at:
             topics = [topic for topic in topics if topic.take(self._meanings, newest)]
             if at_once:
-                self._publish_at_once(_union([self._move(each) for each in newest.values()]))
+                self._publish(_union([self._move(each) for each in newest.values()]))
                 newest.clear()
-                # The wait tells whether there are more. Callers wait for all of them.
-                if self._is_in_period or not self._callers:
+                # The wait tells whether there are more. Calls wait for all of them.
+                if self._is_in_period or not self._calls:
                     return
         self._waiting = _union([self._waiting, *(self._move(each) for each in newest.values())])
 
@@ -307,14 +303,11 @@ class JointStates:
         clock = self._node.get_clock()
         self._is_simulated = clock.ros_time_is_active
         now_ns = clock.now().nanoseconds if self._is_simulated else time.time_ns()
-        self._has_jumped = now_ns < self._now_ns
-        self._now_ns = now_ns
+        self._has_jumped, self._now_ns = now_ns < self._now_ns, now_ns
         if self._has_jumped:
             self._logger.info('time has jumped back', throttle_duration_sec=10.0)
             self._target.frames.forget_stamps()
             self._waiting = _NO_ROWS
-            for topic in self._target.topics:
-                topic.last_ns = 0
 
     def _move(self, message: Message) -> NDArray[np.intp]:
         target, topic, meaning = self._target, message.topic, message.meaning
@@ -343,25 +336,23 @@ class JointStates:
         self, rows: NDArray[np.intp], awaited: Sequence[JointStateTopic] = (),
     ) -> None:
         """
-        Publish moving transforms; with a highest rate, a period begins if there is none.
+        Publish moving transforms, if any; with a highest rate, a period begins if there is none.
 
         :param awaited: the topics whose messages do not wait for the end of this period.
         """
+        if not len(rows):
+            return
         self._target.frames.publish_tf(rows)
         now = time.monotonic()
         self._due[self._publish_to_listeners] = max(self._topics_due, now)
         self._due[self._publish_at_rest] = now + _REST_S
-        # Simulated time that has not begun would never end a period.
-        if self._target.period_ns and self._now_ns and not self._is_in_period:
-            self._period_ends_ns = self._now_ns + self._target.period_ns
-            self._awaited = awaited
-
-    def _publish_at_once(self, rows: NDArray[np.intp]) -> None:
-        if len(rows) and self._is_in_period:
+        if self._is_in_period:
             self._waiting = np.setdiff1d(self._waiting, rows)
             self._awaited = [each for each in self._awaited if each.last_ns < self._now_ns]
-        if len(rows):
-            self._publish(rows)
+        # Simulated time that has not begun would never end a period.
+        elif self._target.period_ns and self._now_ns:
+            self._period_ends_ns = self._now_ns + self._target.period_ns
+            self._awaited = awaited
 
     def _publish_all(self) -> None:
         """Publish all frames on ``/tf``; repeatedly as long as no message has come."""
@@ -388,5 +379,4 @@ class JointStates:
 
 def _union(parts: Sequence[NDArray[np.intp]]) -> NDArray[np.intp]:
     """Return the rows of all parts, most often of one, in ascending order."""
-    parts = [each for each in parts if len(each)]
     return parts[0] if len(parts) == 1 else np.unique(np.concatenate([_NO_ROWS, *parts]))

@@ -168,6 +168,12 @@ class PublishedMovingFrames:
         """Which of the moving transforms follow from known positions."""
         return ~self.frames.depends_on(~self.positions.is_known)
 
+    def rows_from_dofs(self, dofs: Sequence[int]) -> NDArray[np.intp]:
+        """Return the moving transforms that some degrees of freedom, or joints at zero, move."""
+        is_changed = self.positions.is_known & ~self.positions.is_reported
+        is_changed[dofs] = True
+        return np.flatnonzero(self.frames.depends_on(is_changed) & self.has_transform)
+
     def stamp(
         self, rows: NDArray[np.intp], stamp_ns: int, *, ignore_stamps: bool = False,
     ) -> NDArray[np.intp]:

@@ -141,5 +141,5 @@ def test_all_names_together_take_a_limited_number_of_bytes(robots, size):
         for number in range(count):
             names = SerializedNames((str(number) * size,), b'x' * size)
             meanings.add(robots.meanings.find(names, topic)[0])
-            assert robots.meanings.last(topic).names is names
+            assert robots.meanings.last[topic.name].names is names
     assert len(meanings) > 1.5 * count
