@@ -67,12 +67,16 @@ def chain_text(joints: int) -> str:
 
 
 def joint_states(joints: int) -> Iterator[JointState]:
-    """Make messages with other stamps and positions again and again."""
+    """
+    Make messages with other positions again and again.
+
+    Their stamps are the time, as robot_state_publisher compares them with its period.
+    """
     from sensor_msgs.msg import JointState
     names = [f'joint_{number}' for number in range(1, joints + 1)]
     for count in itertools.count(1):
         message = JointState(name=names, position=np.full(joints, count % 1000 * 1e-3))
-        message.header.stamp.sec, message.header.stamp.nanosec = divmod(count, 10**9)
+        message.header.stamp.sec, message.header.stamp.nanosec = divmod(time.time_ns(), 10**9)
         yield message
 
 
