@@ -7,7 +7,6 @@ from __future__ import annotations
 import argparse
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
-import os
 import re
 import sys
 
@@ -81,7 +80,7 @@ def _doubts_about_frames(scene: Scene) -> tuple[SdfWarning, ...]:
 
 def _doubts_about_shapes(scene: Scene, resource_paths: Sequence[str]) -> tuple[SdfWarning, ...]:
     # A shape of a file that is included often has one warning, as all meshes of a missing package.
-    finder = resource_finder(resource_paths, os.environ)
+    finder = resource_finder(resource_paths)
     problems = Problems(scene.files)
     places: dict[tuple[str, str], Place] = {}
     for element, shape in scene.shapes.items():

@@ -9,7 +9,6 @@ from collections.abc import Callable, Mapping
 import contextlib
 from functools import partial
 import importlib
-import os
 from pathlib import Path
 import re
 import shutil
@@ -105,7 +104,7 @@ def run(options: argparse.Namespace) -> int:
         pages = viewer.Pages(
             scene, tf_options_from_arguments(options), 0 if options.output else options.port,
             Units(options.length_unit, options.angle_unit),
-            viewer.MeshReader(resource_finder(options.resource_paths, os.environ), process),
+            viewer.MeshReader(resource_finder(options.resource_paths), process),
             partial(pose_change, load=load) if options.edit else None)
         with contextlib.closing(pages):
             for line in pages.reasons:

@@ -64,6 +64,8 @@ class Diagnostics:
 
     def publish(self) -> None:
         """Publish the status, if there is one and it is switched on."""
+        if not self._publisher.is_on:
+            return
         if self._last is not None:
             name = self._node.get_fully_qualified_name().lstrip('/')
             self._message.status = [

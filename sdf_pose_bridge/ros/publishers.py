@@ -142,6 +142,11 @@ class SwitchedPublisher:
             self._node.destroy_publisher(self._publisher)
             self._publisher = None
 
+    @property
+    def is_on(self) -> bool:
+        """Whether it is switched on."""
+        return self._publisher is not None
+
     def publish(self, message: object) -> None:
         """Publish a message if it is switched on."""
         if self._publisher is not None:

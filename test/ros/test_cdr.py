@@ -23,7 +23,6 @@ NUMBERS = st.lists(
     st.floats(allow_nan=False) | st.sampled_from([-0.0, 5e-324, -2.3e-308]),
     min_size=7, max_size=7)
 ROWS = st.lists(st.tuples(NAMES, NAMES, NUMBERS), max_size=6)
-LENGTHS = st.integers(0, 9).map('n'.__mul__)
 STAMP = 1_000_000_002
 POSITIONS = st.lists(st.floats(allow_nan=False), max_size=5)
 NAMED_POSITIONS = st.lists(st.tuples(NAMES, st.floats(allow_nan=False)), max_size=5)

@@ -88,6 +88,11 @@ def test_the_topic_is_there_while_it_is_switched_on(make_node):
     assert topics == [0, 1, 1, 0, 1]
 
 
+def test_no_status_is_made_while_it_is_off(make_node):
+    diagnostics = Diagnostics(make_node('bridge'), lambda: pytest.fail('it was made'))
+    diagnostics.update(loaded=None)
+
+
 def test_each_message_has_the_time_of_the_node(make_node):
     node = make_node('bridge')
     diagnostics = Diagnostics(node, tuple)

@@ -36,7 +36,6 @@ from sdf_pose_bridge.tf.tree import TfOptions
 
 TYPE = Parameter.Type
 FILE = ('-p', 'sdf_file:=cell.sdf')
-SECONDS = 20.0
 
 
 @pytest.fixture(name='settings')
