@@ -56,18 +56,14 @@ class Client(Node):
         namespace, _, name = self.bridge.rpartition('/')
         return (name, namespace or '/') in self.get_node_names_and_namespaces()
 
-    def wait(self, arrived: Callable[[], bool], what: str, otherwise: str = '') -> None:
-        """
-        Handle messages until something has arrived.
-
-        :param otherwise: why it may not arrive although the node is running.
-        """
+    def wait(
+        self, arrived: Callable[[], bool], what: str, hint: str = 'is the node running?',
+    ) -> None:
+        """Handle messages until something has arrived."""
         while not arrived():
             left = self._deadline - time.monotonic()
             if left <= 0.0:
-                if not otherwise or not self.is_bridge_there():
-                    otherwise = 'is the node running?'
-                msg = f'no {what} within {self.timeout:g} s; {otherwise}'
+                msg = f'no {what} within {self.timeout:g} s; {hint}'
                 raise NoAnswerError(msg)
             rclpy.spin_once(self, timeout_sec=min(left, 0.1))
 
@@ -85,6 +81,8 @@ class Client(Node):
 
     def pose(self, frame: str) -> PoseStamped:
         """Return the message on the pose topic of a frame."""
+        # The service answers at once where there is no such frame.
+        self.call(LookupPose, 'lookup_pose', LookupPose.Request(frame=frame))
         topic = f'{self.bridge}/poses/{topic_name_from_frame_id(frame)}'
         poses: list[PoseStamped] = []
         self.create_subscription(
@@ -92,7 +90,7 @@ class Client(Node):
             QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL))
         self.wait(
             lambda: bool(poses), f'message on {topic}',
-            f'the node {self.bridge} does not publish a pose of "{frame}"')
+            'the parameter pose_topics chooses the frames that have one')
         return poses[0]
 
 
