@@ -61,10 +61,15 @@ def wait_for_x(listener, x, frame='crate/body'):
     listener.wait(lambda: last_x(listener, frame) == x, lambda: f'x = {x}')
 
 
-def results_of_setting(listener, node=BRIDGE, **values):
+def asked_to_set(listener, node=BRIDGE, **values):
+    """Return the future answer to a call that sets parameters."""
     request = SetParameters.Request(parameters=[
         Parameter(name, value=value).to_parameter_msg() for name, value in values.items()])
-    results = listener.call(SetParameters, f'{node}/set_parameters', request).results
+    return listener.ask(SetParameters, f'{node}/set_parameters', request)
+
+
+def results_of_setting(listener, node=BRIDGE, **values):
+    results = listener.response(asked_to_set(listener, node, **values)).results
     assert len(results) == len(values)
     return results
 
@@ -83,8 +88,13 @@ def reason_for_refusal(listener, **values):
     return reason
 
 
+def asked_to_reload(listener):
+    """Return the future answer to a call that has the file read again."""
+    return listener.ask(Trigger, f'{BRIDGE}/reload', Trigger.Request())
+
+
 def reload(listener):
-    return listener.call(Trigger, f'{BRIDGE}/reload', Trigger.Request())
+    return listener.response(asked_to_reload(listener))
 
 
 class SharedBridge:

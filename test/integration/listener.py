@@ -35,7 +35,7 @@ class Listener:
         self.tf_messages = []
         self.transforms = {}
         self.poses = {}
-        self._callers = {}
+        self._clients = {}
 
     def listen_to_frames(self, bridge='/sdf_pose_bridge'):
         self.node.create_subscription(
@@ -68,34 +68,61 @@ class Listener:
         self.wait(
             lambda: collection.keys() >= set(keys), lambda: sorted(set(keys) - set(collection)))
 
-    def call(self, service_type, name, request):
+    def ask(self, service_type, name, request):
+        """Send a request to a service, and return its :class:`Answer`."""
         # Kept, as programs do.
-        is_new = name not in self._callers
+        is_new = name not in self._clients
         if is_new:
             # A client receives the answers to all clients, and by default keeps ten of them.
-            self._callers[name] = self.node.create_client(
+            self._clients[name] = self.node.create_client(
                 service_type, name, qos_profile=qos_profile_parameters)
-        client = self._callers[name]
+        client = self._clients[name]
         self.wait(client.service_is_ready, lambda: name)
-        futures = [client.call_async(request)]
-        asked_at = time.monotonic()
+        return Answer(client, request, may_be_lost=is_new)
 
-        def is_answered():
-            nonlocal asked_at
-            # The middleware may lose the first answer to a client that it has just discovered.
-            if is_new and time.monotonic() > asked_at + LOST_S:
-                futures.append(client.call_async(request))
-                asked_at = time.monotonic()
-            return any(future.done() for future in futures)
+    def call(self, service_type, name, request):
+        """Return the response of a service to a request."""
+        return self.response(self.ask(service_type, name, request))
 
-        self.wait(is_answered, lambda: f'an answer from {name}')
-        return next(future.result() for future in futures if future.done())
+    def response(self, answer):
+        """Wait for an answer, and return the response."""
+        self.wait(answer.done, lambda: f'an answer from {answer.service}')
+        return answer.result()
 
     def end(self):
         self._executor.shutdown()
         self.node.destroy_node()
         self._context.shutdown()
         self._context.destroy()
+
+
+class Answer:
+    """
+    The future answer to a request, which is sent again where the answer is lost.
+
+    :param may_be_lost: whether it is the first request of a client: the middleware may lose the
+        answer to a client that it has not discovered completely.
+    """
+
+    def __init__(self, client, request, *, may_be_lost=True):
+        self.service = client.srv_name
+        self._client = client
+        self._request = request
+        self._may_be_lost = may_be_lost
+        self._futures = []
+        self._send()
+
+    def _send(self):
+        self._futures.append(self._client.call_async(self._request))
+        self._sent_at = time.monotonic()
+
+    def done(self):
+        if self._may_be_lost and time.monotonic() > self._sent_at + LOST_S:
+            self._send()
+        return any(future.done() for future in self._futures)
+
+    def result(self):
+        return next(future.result() for future in self._futures if future.done())
 
 
 class TfListener:

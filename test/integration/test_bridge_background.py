@@ -7,6 +7,8 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from changes import (
+    asked_to_reload,
+    asked_to_set,
     BRIDGE,
     last_x,
     listen_to_tf,
@@ -20,9 +22,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from rcl_interfaces.msg import Parameter as ParameterMessage
 from rcl_interfaces.msg import ParameterType, ParameterValue
 from rcl_interfaces.srv import GetParameters, SetParameters
-from rclpy.parameter import Parameter
 from slow_file import SlowFile
-from std_srvs.srv import Trigger
 
 from sdf_pose_bridge_interfaces.srv import ConvertRotation, LookupPose
 
@@ -48,24 +48,6 @@ def published_file_that_is_slow(listener, file):
     return slow
 
 
-def asked(listener, service_type, name, request):
-    """Ask a service for something, and return what will have the answer."""
-    client = listener.node.create_client(service_type, f'{BRIDGE}/{name}')
-    listener.wait(client.service_is_ready, lambda: name)
-    return client.call_async(request)
-
-
-def asked_for_file(listener, path):
-    parameter = Parameter('sdf_file', value=str(path)).to_parameter_msg()
-    return asked(
-        listener, SetParameters, 'set_parameters', SetParameters.Request(parameters=[parameter]))
-
-
-def answer_to(listener, future):
-    listener.wait(future.done, lambda: 'the answer')
-    return future.result()
-
-
 def assert_services_answer(listener):
     answer = listener.call(
         ConvertRotation, f'{BRIDGE}/convert_rotation', ConvertRotation.Request())
@@ -79,24 +61,24 @@ def assert_services_answer(listener):
 
 
 def test_services_answer_while_a_parameter_has_a_file_read(slow, listener):
-    setting = asked_for_file(listener, slow.path)
+    setting = asked_to_set(listener, sdf_file=str(slow.path))
     with slow.opened():
         assert_services_answer(listener)
         assert not setting.done()
         assert last_x(listener) == 1.0
         slow.write(world(2))
-    (result,) = answer_to(listener, setting).results
+    (result,) = listener.response(setting).results
     assert result.successful, result.reason
     wait_for_x(listener, 2.0)
 
 
 def test_services_answer_while_a_file_is_read_again(slow_again, listener):
-    reloading = asked(listener, Trigger, 'reload', Trigger.Request())
+    reloading = asked_to_reload(listener)
     with slow_again.opened():
         assert_services_answer(listener)
         assert not reloading.done()
         slow_again.write(world(2))
-    answer = answer_to(listener, reloading)
+    answer = listener.response(reloading)
     assert answer.success, answer.message
     wait_for_x(listener, 2.0)
 
@@ -112,14 +94,14 @@ def test_services_answer_while_a_changed_file_is_read(file, slow, listener):
 def test_what_is_asked_for_during_a_reload_comes_after_it(slow_again, listener, tmp_path):
     other = tmp_path / 'other.sdf'
     other.write_text(world(5), encoding='utf-8')
-    reloading = asked(listener, Trigger, 'reload', Trigger.Request())
+    reloading = asked_to_reload(listener)
     with slow_again.opened():
-        setting = asked_for_file(listener, other)
+        setting = asked_to_set(listener, sdf_file=str(other))
         assert_services_answer(listener)
         assert not setting.done()
         slow_again.write(world(2))
-    assert answer_to(listener, reloading).success
-    assert answer_to(listener, setting).results[0].successful
+    assert listener.response(reloading).success
+    assert listener.response(setting).results[0].successful
     wait_for_x(listener, 5.0)
     places = [each.transforms[-1].transform.translation.x for each in listener.tf_messages]
     assert sorted(places) == places
@@ -129,10 +111,10 @@ def test_what_is_asked_for_during_a_reload_comes_after_it(slow_again, listener, 
 
 
 def test_what_arrives_bad_after_a_while_is_refused(slow, listener):
-    setting = asked_for_file(listener, slow.path)
+    setting = asked_to_set(listener, sdf_file=str(slow.path))
     with slow.opened():
         slow.write('not XML')
-    (result,) = answer_to(listener, setting).results
+    (result,) = listener.response(setting).results
     assert not result.successful
     assert f'{slow.path}:1: FILE_READ' in result.reason
     assert reload(listener).success
@@ -141,11 +123,11 @@ def test_what_arrives_bad_after_a_while_is_refused(slow, listener):
 
 def test_diagnostics_go_on_while_a_file_is_read(slow, listener):
     monitor = Monitor(listener)
-    setting = asked_for_file(listener, slow.path)
+    setting = asked_to_set(listener, sdf_file=str(slow.path))
     with slow.opened():
         assert monitor.wait_for_more().level == DiagnosticStatus.OK
         slow.write(world(2))
-    assert answer_to(listener, setting).results[0].successful
+    assert listener.response(setting).results[0].successful
 
 
 def test_an_empty_list_of_another_type_is_taken_for_a_list_of_strings(listener):

@@ -10,6 +10,7 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from bridge_process import STARTED
 from changes import (
+    asked_to_set,
     BRIDGE,
     listen_to_tf,
     Monitor,
@@ -213,12 +214,7 @@ def test_a_signal_ends_it_well_while_it_reads_another_file(
     bridge = start_bridge('--ros-args', '-p', f'sdf_file:={file}').wait_until_started()
     listener = start_listener()
     slow = SlowFile(tmp_path / 'slow.sdf')
-    request = SetParameters.Request(parameters=[Parameter(
-        name='sdf_file', value=ParameterValue(
-            type=ParameterType.PARAMETER_STRING, string_value=str(slow.path)))])
-    client = listener.node.create_client(SetParameters, f'{BRIDGE}/set_parameters')
-    listener.wait(client.service_is_ready, lambda: 'the service')
-    client.call_async(request)
+    asked_to_set(listener, sdf_file=str(slow.path))
     with slow.opened():
         bridge.send(number)
         assert bridge.wait_for_end() == 0, '\n'.join(bridge.lines)

@@ -17,6 +17,7 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 from bridge_process import LoggedProcess
 from changes import BRIDGE, reload, replace, set_parameters, Waiting, world
 from geometry_msgs.msg import Quaternion, Vector3
+from listener import Answer
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import (
     DescribeParameters,
@@ -130,10 +131,8 @@ def test_many_clients_at_once_are_all_answered(bridge, start_listener):
         for _ in range(CLIENTS)]
     for client in clients:
         listener.wait(client.service_is_ready, lambda: 'the service')
-    futures = [client.call_async(LookupPose.Request(frame='crate::body')) for client in clients]
-    listener.wait(lambda: all(future.done() for future in futures),
-                  lambda: sum(not future.done() for future in futures))
-    assert all(future.result().success for future in futures)
+    answers = [Answer(client, LookupPose.Request(frame='crate::body')) for client in clients]
+    assert all(listener.response(answer).success for answer in answers)
 
 
 def test_a_client_that_leaves_before_the_answer_harms_nobody(bridge, file, start_listener):
@@ -174,12 +173,6 @@ def test_more_numbers_than_a_call_can_have_are_refused(bridge, start_listener):
 # Calls that ask for much with few bytes, or repeat themselves
 
 
-def asked(listener, service_type, name, request):
-    client = listener.node.create_client(service_type, f'{BRIDGE}/{name}')
-    listener.wait(client.service_is_ready, lambda: name)
-    return client.call_async(request)
-
-
 def value_of(**fields):
     return ParameterValue(
         type=getattr(ParameterType, f'PARAMETER_{next(iter(fields)).rpartition("_")[0].upper()}'),
@@ -194,10 +187,10 @@ def test_very_many_values_for_a_parameter_are_refused_in_one_sentence(bridge, st
     parameters += [
         Parameter(name='publish_rate', value=value_of(double_value=0.0)) for _ in range(999)]
     waiting = Waiting(listener, bridge.pid)
-    future = asked(listener, SetParameters, 'set_parameters', SetParameters.Request(
-        parameters=parameters))
-    waiting.check_until(future.done)
-    results = future.result().results
+    answer = listener.ask(
+        SetParameters, f'{BRIDGE}/set_parameters', SetParameters.Request(parameters=parameters))
+    waiting.check_until(answer.done)
+    results = answer.result().results
     assert len(results) == 1000
     assert not any(result.successful for result in results)
     assert results[0].reason == (
@@ -226,10 +219,10 @@ def test_a_large_value_is_not_repeated(start_bridge, start_listener, tmp_path):
         GetParameters, f'{BRIDGE}/get_parameters', GetParameters.Request(names=[name])).values
     assert value.string_value == text
     waiting = Waiting(listener, bridge.pid)
-    future = asked(
-        listener, GetParameters, 'get_parameters', GetParameters.Request(names=[name] * 1000))
-    waiting.check_until(future.done)
-    assert future.result().values == []
+    answer = listener.ask(
+        GetParameters, f'{BRIDGE}/get_parameters', GetParameters.Request(names=[name] * 1000))
+    waiting.check_until(answer.done)
+    assert answer.result().values == []
 
 
 def test_what_is_searched_among_many_long_names_keeps_nobody_waiting(
@@ -239,13 +232,14 @@ def test_what_is_searched_among_many_long_names_keeps_nobody_waiting(
     bridge.wait_for_line('publishing 40002 frames')
     listener = start_listener()
     waiting = Waiting(listener, bridge.pid)
-    future = asked(
-        listener, LookupPose, 'lookup_pose', LookupPose.Request(frame=f'{LONG_NAME}x'))
-    waiting.check_until(future.done)
-    assert '; did you mean ' in future.result().message
+    answer = listener.ask(
+        LookupPose, f'{BRIDGE}/lookup_pose', LookupPose.Request(frame=f'{LONG_NAME}x'))
+    waiting.check_until(answer.done)
+    assert '; did you mean ' in answer.result().message
     patterns = [f'*{number}{"a" * 200}b' for number in range(1000)]
-    future = asked(listener, SetParameters, 'set_parameters', SetParameters.Request(parameters=[
-        Parameter(name='pose_topics', value=value_of(string_array_value=patterns))]))
-    waiting.check_until(future.done)
-    assert future.result().results[0].successful
+    request = SetParameters.Request(parameters=[
+        Parameter(name='pose_topics', value=value_of(string_array_value=patterns))])
+    answer = listener.ask(SetParameters, f'{BRIDGE}/set_parameters', request)
+    waiting.check_until(answer.done)
+    assert answer.result().results[0].successful
     bridge.wait_for_line('takes too long')

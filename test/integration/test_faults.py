@@ -18,7 +18,7 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 from bridge_process import LoggedProcess, SECONDS, STARTED
 from builtin_interfaces.msg import Time
 from changes import (
-    BRIDGE,
+    asked_to_set,
     listen_to_tf,
     Monitor,
     reload,
@@ -30,8 +30,6 @@ from changes import (
 )
 from command_line import executable_of_workspace
 from diagnostic_msgs.msg import DiagnosticStatus
-from rcl_interfaces.srv import SetParameters
-from rclpy.parameter import Parameter
 from rosgraph_msgs.msg import Clock
 from sizes import size
 from slow_file import SlowFile
@@ -249,12 +247,9 @@ def test_a_file_that_needs_too_much_keeps_nobody_waiting(
         wait_for_x(listener, 1.0)
         assert reload(listener).success
         waiting = Waiting(listener, bridge.pid)
-        parameter = Parameter('sdf_file', value=str(large)).to_parameter_msg()
-        client = listener.node.create_client(SetParameters, f'{BRIDGE}/set_parameters')
-        listener.wait(client.service_is_ready, lambda: 'the service')
-        future = client.call_async(SetParameters.Request(parameters=[parameter]))
-        waiting.check_until(future.done)
-        (result,) = future.result().results
+        answer = asked_to_set(listener, sdf_file=str(large))
+        waiting.check_until(answer.done)
+        (result,) = answer.result().results
         assert result.reason == f'{large}: LIMIT: the file needs {message} to be read'
         assert reload(listener).success
     finally:

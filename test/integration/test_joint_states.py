@@ -10,11 +10,18 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from bridge_process import LoggedProcess
-from changes import BRIDGE, listen_to_tf, pose_of, reload, replace, set_parameters
+from changes import (
+    asked_to_reload,
+    BRIDGE,
+    listen_to_tf,
+    pose_of,
+    reload,
+    replace,
+    set_parameters,
+)
 from geometry_msgs.msg import PoseStamped, TransformStamped
 from listener import latched
 from slow_file import SlowFile
-from std_srvs.srv import Trigger
 
 from sdf_pose_bridge_interfaces.srv import LookupPose
 
@@ -202,17 +209,14 @@ def test_joints_move_while_the_file_is_read_again(follow, file, joints, tf):
     follow(watch=False)
     slow = SlowFile(file, ARM.format(tool=1))
     tf.wait_for('slide', joints.send({'lift': 0.1}))
-    client = tf.listener.node.create_client(Trigger, f'{BRIDGE}/reload')
-    tf.listener.wait(client.service_is_ready, lambda: 'reload')
     slow.hold()
-    reloading = client.call_async(Trigger.Request())
+    reloading = asked_to_reload(tf.listener)
     with slow.opened():
         sec = joints.send({'lift': 0.25})
         assert tf.wait_for('slide', sec).translation.z == 1.25
         assert pose_of(tf, 'tool').x == 1.0
         slow.write(ARM.format(tool=3))
-    tf.listener.wait(reloading.done, lambda: 'the answer')
-    assert reloading.result().success
+    assert tf.listener.response(reloading).success
     assert (pose_of(tf, 'tool').x, pose_of(tf, 'tool').z) == (3.0, 2.25)
     assert tf.wait_for('slide', joints.send({'lift': 0.5})).translation.z == 1.5
 
