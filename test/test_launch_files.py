@@ -185,6 +185,7 @@ def test_rviz_follows_root_frame_and_namespace(namespace):
     assert remappings == {VISUALS: f'/left{VISUALS}'}
 
 
+@pytest.mark.usefixtures('rviz_installed')
 def test_the_fixed_frame_of_rviz_is_the_root_of_what_is_published(tmp_path):
     params_file = tmp_path / 'params.yaml'
     params_file.write_text('/**: {ros__parameters: {frame_prefix: r1/}}')
