@@ -247,7 +247,7 @@ def _remove_prefix_from_references(
     xml: XmlElement, prefix: str, sources: Sources,
     referrers: Callable[[XmlElement], list[XmlElement]],
 ) -> None:
-    pose = first_child(xml, 'pose')
+    pose = xml.find('pose')
     if pose is not None:
         # If it is relative to another frame, that is looked up in the new model.
         relative_to = attribute_of(pose, 'relative_to')
