@@ -3,7 +3,7 @@
 """
 Convert values of parameters to settings, at the start of the node and in calls of services.
 
-The services that set parameters are offered here instead of by rclpy, which offers the others.
+The services are rclpy's; those that set parameters are answered here.
 """
 
 from __future__ import annotations
@@ -21,17 +21,15 @@ from rcl_interfaces.srv import (
     SetParameters,
     SetParametersAtomically,
 )
-from rclpy.callback_groups import CallbackGroup
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rclpy.qos import (
-    DurabilityPolicy,
-    HistoryPolicy,
-    qos_profile_parameters,
-    ReliabilityPolicy,
-)
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, ReliabilityPolicy
+from rclpy.service import Service
+from rclpy.task import Future
 
 from sdf_pose_bridge.names import hint_from_names, printable, shortened
+from sdf_pose_bridge.ros.background import wake
 from sdf_pose_bridge.ros.parameters import DECLARATIONS, Settings, SettingsError, Value
 from sdf_pose_bridge.ros.setting_rules import MOST_VALUES
 
@@ -152,71 +150,82 @@ def warnings_about_unknown_parameters(
         for name, hint in hints.items() if hint or not known_elsewhere]
 
 
-def restrict_parameter_services(node: Node) -> None:
+class ParameterServices:
     """
-    Restrict rclpy's parameter services, before a client can have found them.
+    The parameter services of rclpy, with other callbacks.
 
-    The services that set parameters are removed: they set the parameters of a call one after the
-    other and block the executor. The file would be read for each of them, with settings that
-    nobody requested. The services that read parameters by their names return nothing if a name is
-    repeated: a few bytes could request gigabytes.
+    It must be made before the executor of the node spins.
+
+    :param node: the node that offers them.
     """
-    for service in list(node.services):
-        if service.srv_type in (SetParameters, SetParametersAtomically):
-            node.destroy_service(service)
-        elif service.srv_type in (DescribeParameters, GetParameters, GetParameterTypes):
-            service.callback = _without_repetition(service.callback)
 
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self.group = MutuallyExclusiveCallbackGroup()
+        """Callback group of the services that set parameters."""
+        self._set_parameters: Future = Future()
+        for service in node.services:
+            # rclpy's callbacks set the parameters of a call one after the other and block the
+            # executor. The file would be read for each of them, with settings that nobody
+            # requested. The services stay, as clients may have found them already.
+            if service.srv_type is SetParameters:
+                self._replace(service, self._set_each)
+            elif service.srv_type is SetParametersAtomically:
+                self._replace(service, self._set_atomically)
+            elif service.srv_type in (DescribeParameters, GetParameters, GetParameterTypes):
+                service.callback = _without_repetition(service.callback)
 
-def _without_repetition(callback: Callable[[Any, Any], Any]) -> Callable[[Any, Any], Any]:
-    def answer(request: Any, response: Any) -> Any:
-        is_unique = len(set(request.names)) == len(request.names)
-        return callback(request, response) if is_unique else response
-    return answer
+    def _replace(self, service: Service, callback: Callable[[Any, Any], Awaitable[Any]]) -> None:
+        service.callback = callback
+        service.callback_group = self.group
+        self.group.add_entity(service)
 
+    def start(
+        self, set_parameters: Callable[[list[Parameter]], Awaitable[SetParametersResult]],
+    ) -> None:
+        """
+        Answer the calls that set parameters; until then they wait.
 
-def add_setting_services(
-    node: Node, group: CallbackGroup,
-    set_parameters: Callable[[list[Parameter]], Awaitable[SetParametersResult]],
-) -> None:
-    """
-    Offer the services that set parameters; a call sets all of its parameters or none.
+        A call sets all of its parameters or none. Calls that are too large are rejected first.
 
-    Calls that are too large are rejected first.
+        :param set_parameters: sets declared parameters, and returns the result for the response.
+        """
+        self._set_parameters.set_result(set_parameters)
+        wake(self._node.executor)
 
-    :param group: callback group of the services.
-    :param set_parameters: sets declared parameters, and returns the result for the response.
-    """
-    async def result(messages: Sequence[ParameterMessage]) -> SetParametersResult:
+    async def _result(self, messages: Sequence[ParameterMessage]) -> SetParametersResult:
+        set_parameters = await self._set_parameters
         try:
-            parameters = _parameters_from_messages(node, messages)
+            parameters = _parameters_from_messages(self._node, messages)
         except (ValueError, TypeError) as error:
             return SetParametersResult(successful=False, reason=str(error))
-        return await set_parameters(parameters)
+        result: SetParametersResult = await set_parameters(parameters)
+        return result
 
-    async def set_each(
-        request: SetParameters.Request, response: SetParameters.Response,
+    async def _set_each(
+        self, request: SetParameters.Request, response: SetParameters.Response,
     ) -> SetParameters.Response:
         count = len(request.parameters)
-        found = other = await result(request.parameters)
+        found = other = await self._result(request.parameters)
         if not found.successful:
             other = SetParametersResult(
                 successful=False, reason='the first result of this answer says why')
         response.results = ([found] * MOST_REASONS + [other] * count)[:count]
         return response
 
-    async def set_atomically(
-        request: SetParametersAtomically.Request, response: SetParametersAtomically.Response,
+    async def _set_atomically(
+        self, request: SetParametersAtomically.Request, response: SetParametersAtomically.Response,
     ) -> SetParametersAtomically.Response:
-        response.result = await result(request.parameters)
+        response.result = await self._result(request.parameters)
         return response
 
-    for service_type, name, callback in (
-            (SetParameters, 'set_parameters', set_each),
-            (SetParametersAtomically, 'set_parameters_atomically', set_atomically)):
-        node.create_service(
-            service_type, f'~/{name}', callback, qos_profile=qos_profile_parameters,
-            callback_group=group)
+
+def _without_repetition(callback: Callable[[Any, Any], Any]) -> Callable[[Any, Any], Any]:
+    """Return nothing if a name is repeated: a few bytes could request gigabytes."""
+    def answer(request: Any, response: Any) -> Any:
+        is_unique = len(set(request.names)) == len(request.names)
+        return callback(request, response) if is_unique else response
+    return answer
 
 
 def _given_parameters(node: Node) -> Mapping[str, Parameter]:

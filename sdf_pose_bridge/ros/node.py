@@ -25,7 +25,7 @@ from sdf_pose_bridge.ros.background import CoroutineLock, PollingThread, run_in_
 from sdf_pose_bridge.ros.cdr import NANOSECONDS
 from sdf_pose_bridge.ros.diagnostics import Diagnostics, PERIOD_S
 from sdf_pose_bridge.ros.file_follower import FileFollower
-from sdf_pose_bridge.ros.given_parameters import add_setting_services, changed_settings
+from sdf_pose_bridge.ros.given_parameters import changed_settings, ParameterServices
 from sdf_pose_bridge.ros.log_lines import (
     line_about_frames,
     line_about_joints_at_rest,
@@ -59,11 +59,12 @@ class SdfPoseBridge:
 
     :param node: the node, with declared parameters and an executor.
     :param frames: the frames of the scene, which are published.
+    :param parameter_services: those of the node, which answer from then on.
     """
 
     def __init__(
         self, node: Node, frames: PublishedFrames, settings: Settings, loaded: LoadedScene,
-        reader: SceneReader,
+        reader: SceneReader, parameter_services: ParameterServices,
     ) -> None:
         self._node = node
         self._logger = node.get_logger()
@@ -77,7 +78,7 @@ class SdfPoseBridge:
         self._has_told_of_joints = False
         self._follower = FileFollower(loaded)
         # All callbacks that change the published scene run one after the other.
-        self._changes = MutuallyExclusiveCallbackGroup()
+        self._changes = parameter_services.group
         # Held while publishing on all topics. A timer that is always due would block the callbacks
         # of its group, so it has a separate group.
         self._publishing = CoroutineLock(node)
@@ -96,7 +97,7 @@ class SdfPoseBridge:
             node.create_service(
                 SetPose, '~/set_pose', self._answer_to_set_pose, qos_profile=SERVICE_QOS,
                 callback_group=self._changes)
-        add_setting_services(node, self._changes, self._set_parameters)
+        parameter_services.start(self._set_parameters)
         node.create_timer(PERIOD_S, self._diagnostics.publish, clock=steady_clock)
         PollingThread(
             node, self._changes,
@@ -305,7 +306,7 @@ class SdfPoseBridge:
 
 async def start_bridge(
     node: Node, frames: PublishedFrames, settings: Settings, loaded: LoadedScene,
-    reader: SceneReader,
+    reader: SceneReader, parameter_services: ParameterServices,
 ) -> None:
     """
     Publish a scene on all other topics, and start the services.
@@ -313,7 +314,8 @@ async def start_bridge(
     :param node: the node, with declared parameters and an executor.
     :param frames: the frames of the scene, which are published on ``/tf_static``.
     :param reader: reads files.
+    :param parameter_services: the parameter services of the node.
     """
     frames = await frames_from_scene(node, loaded, settings, frames)
     await frames.publish_topics()
-    SdfPoseBridge(node, frames, settings, loaded, reader)
+    SdfPoseBridge(node, frames, settings, loaded, reader, parameter_services)

@@ -30,7 +30,7 @@ from rclpy.utilities import remove_ros_args
 
 from sdf_pose_bridge.errors import AddressError, SdfError
 from sdf_pose_bridge.ros.given_parameters import (
-    restrict_parameter_services,
+    ParameterServices,
     settings_from_node,
     warnings_about_unknown_parameters,
 )
@@ -122,7 +122,7 @@ def run(args: Sequence[str], program_name: str, reader: SceneReader) -> int:
                 f'{program.usage}')
             return 1
         node = Node(program.node_name)
-        restrict_parameter_services(node)
+        parameter_services = ParameterServices(node)
     except InvalidParameterTypeException as error:
         # A parameter of rclpy, such as use_sim_time. Its name comes last again.
         _complain(program, str(error).rpartition(': ')[0])
@@ -132,7 +132,7 @@ def run(args: Sequence[str], program_name: str, reader: SceneReader) -> int:
         return 1
     node.get_logger().debug(sentence_about_profile)
     try:
-        exit_code = _exit_code_from_node(node, program, reader, *words)
+        exit_code = _exit_code_from_node(node, program, reader, parameter_services, *words)
     except KeyboardInterrupt:
         exit_code = 0
     node.destroy_node()
@@ -141,7 +141,8 @@ def run(args: Sequence[str], program_name: str, reader: SceneReader) -> int:
 
 
 def _exit_code_from_node(
-    node: Node, program: Program, reader: SceneReader, file: str = '',
+    node: Node, program: Program, reader: SceneReader, parameter_services: ParameterServices,
+    file: str = '',
 ) -> int:
     _log_warnings(node, warnings_about_unknown_parameters(node, program.known_elsewhere))
     try:
@@ -170,7 +171,8 @@ def _exit_code_from_node(
     gc.enable()
     executor = SingleThreadedExecutor()
     executor.add_node(node)
-    start = executor.create_task(start_bridge, node, frames, settings, loaded, reader)
+    start = executor.create_task(
+        start_bridge, node, frames, settings, loaded, reader, parameter_services)
     if program is ROBOT_STATE_PUBLISHER:
         # Scripts wait for this line of the package robot_state_publisher.
         start.add_done_callback(lambda _: node.get_logger().info('Robot initialized'))

@@ -5,6 +5,7 @@
 import array
 import math
 import sys
+import time
 
 import pytest
 
@@ -14,8 +15,17 @@ from hypothesis import strategies as st
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from bridge_process import LoggedProcess
-from changes import BRIDGE, reload, replace, set_parameters, Waiting, world
+from bridge_process import LoggedProcess, SECONDS
+from changes import (
+    BRIDGE,
+    listen_to_tf,
+    reload,
+    replace,
+    set_parameters,
+    wait_for_x,
+    Waiting,
+    world,
+)
 from geometry_msgs.msg import Quaternion, Vector3
 from listener import Answer
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
@@ -133,6 +143,23 @@ def test_many_clients_at_once_are_all_answered(bridge, start_listener):
         listener.wait(client.service_is_ready, lambda: 'the service')
     answers = [Answer(client, LookupPose.Request(frame='crate::body')) for client in clients]
     assert all(listener.response(answer).success for answer in answers)
+
+
+def test_a_client_that_waits_for_the_node_is_answered(start_bridge, start_listener, file):
+    listener = start_listener()
+    client = listener.node.create_client(SetParameters, f'{BRIDGE}/set_parameters')
+    start_bridge('--ros-args', '-p', f'sdf_file:={file}')
+    deadline = time.monotonic() + SECONDS
+    # As rclcpp, which is told of each change; client.wait_for_service looks every 0.25 s.
+    while not client.service_is_ready():
+        assert time.monotonic() < deadline, 'waited in vain for the service'
+        time.sleep(0.001)
+    answer = Answer(client, SetParameters.Request(parameters=[
+        Parameter(name='frame_prefix', value=value_of(string_value='r/'))]), may_be_lost=False)
+    (result,) = listener.response(answer).results
+    assert result.successful, result.reason
+    listen_to_tf(listener)
+    wait_for_x(listener, 1.0, 'r/crate/body')
 
 
 def test_a_client_that_leaves_before_the_answer_harms_nobody(bridge, file, start_listener):

@@ -9,20 +9,19 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
+from rcl_interfaces.msg import SetParametersResult
 from rcl_interfaces.srv import (
     DescribeParameters,
     GetParameters,
     GetParameterTypes,
-    ListParameters,
     SetParameters,
-    SetParametersAtomically,
 )
 from rclpy.parameter import Parameter
 
 from sdf_pose_bridge.ros.given_parameters import (
     changed_settings,
     parameter_with_type,
-    restrict_parameter_services,
+    ParameterServices,
     settings_from_node,
     settings_from_values,
     warnings_about_unknown_parameters,
@@ -271,26 +270,41 @@ def test_a_value_with_the_same_meaning_is_converted(type_, value, wanted, conver
 
 # Services
 
-@pytest.fixture(name='services')
-def restricted_services(make_node):
+@pytest.fixture(name='node')
+def node_with_parameters(make_node):
     node = make_node('bridge')
     node.declare_parameter('a', 3.5)
     node.declare_parameter('b', ['x', 'y'])
-    restrict_parameter_services(node)
-    return {service.srv_type: service for service in node.services}
+    return node
 
 
-def test_those_that_set_parameters_are_removed(services):
-    assert SetParameters not in services
-    assert SetParametersAtomically not in services
-    assert ListParameters in services
+def service_of(node, service_type):
+    (service,) = (service for service in node.services if service.srv_type is service_type)
+    return service
+
+
+def test_a_call_that_sets_parameters_waits_for_the_start(node):
+    async def set_parameters(parameters):
+        return SetParametersResult(successful=True, reason=f'{parameters[0].name} is set')
+
+    services = ParameterServices(node)
+    service = service_of(node, SetParameters)
+    assert service.callback_group is services.group
+    call = service.callback(SetParameters.Request(parameters=[
+        Parameter('a', TYPE.DOUBLE, 1.0).to_parameter_msg()]), SetParameters.Response())
+    call.send(None)
+    services.start(set_parameters)
+    with pytest.raises(StopIteration) as end:
+        call.send(None)
+    assert [each.reason for each in end.value.value.results] == ['a is set']
 
 
 @pytest.mark.parametrize(('service_type', 'field'), [
     (DescribeParameters, 'descriptors'), (GetParameters, 'values'), (GetParameterTypes, 'types')])
 @pytest.mark.parametrize(('names', 'count'), [(['a', 'b'], 2), (['a'], 1), (['a', 'a'], 0)])
-def test_a_name_that_is_repeated_gets_nothing(services, service_type, field, names, count):
-    response = services[service_type].callback(
+def test_a_name_that_is_repeated_gets_nothing(node, service_type, field, names, count):
+    ParameterServices(node)
+    response = service_of(node, service_type).callback(
         service_type.Request(names=names), service_type.Response())
     assert len(getattr(response, field)) == count
 
