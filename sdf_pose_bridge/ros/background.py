@@ -8,13 +8,12 @@ The node of each function and class has an executor.
 
 from __future__ import annotations
 
-import _thread
 from collections.abc import Awaitable, Callable
 import contextlib
 import os
+from queue import SimpleQueue
 import threading
 import time
-import weakref
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.exceptions import InvalidHandle
@@ -29,44 +28,51 @@ LARGEST_SHARE = 0.001
 """Largest share of a core for evaluating it; if this takes long, the period gets longer."""
 
 
-def run_in_thread(node: Node, function: Callable[[], object]) -> Future:
+class Worker:
     """
-    Run a function in a separate thread, which does not keep the process from ending.
+    A thread that runs functions one after the other, and does not keep the process from ending.
 
-    :param function: the function; it must not use the node.
-    :return: a future for its result or exception, which a coroutine on the executor can await.
-    :raises MemoryError: if no thread can be started.
+    It is started while there is memory: a new thread may end without it before it runs anything.
     """
-    executor = node.executor
-    future = Future()
 
-    def run() -> None:
-        try:
-            future.set_result(function())
-        except MemoryError:
-            return  # its traceback still references the objects of the function here
-        except Exception as error:  # noqa: BLE001 - raised where the future is awaited
-            future.set_exception(error)
-        # The executor resumes coroutines only when it wakes up.
-        wake(executor)
+    def __init__(self, node: Node) -> None:
+        self._executor = node.executor
+        self._calls: SimpleQueue[tuple[Future, Callable[[], object]]] = SimpleQueue()
+        threading.Thread(target=self._run, name='worker', daemon=True).start()
 
-    def end() -> None:
+    def run(self, function: Callable[[], object]) -> Future:
+        """
+        Run a function in the thread.
+
+        :param function: the function; it must not use the node.
+        :return: a future for its result or exception, which a coroutine on the executor can await.
+        """
+        future = Future()
+        self._calls.put((future, function))
+        return future
+
+    def _run(self) -> None:
+        while True:
+            self._run_next()
+
+    def _run_next(self) -> None:
+        result, error = None, None
+        future, function = self._calls.get()
         try:
-            if not future.done():
-                future.set_exception(MemoryError('out of memory'))
-                wake(executor)
+            result = function()
+        except Exception as raised:  # noqa: BLE001 - raised where the future is awaited
+            # The traceback of the one that was raised references the objects of the function.
+            error = MemoryError() if isinstance(raised, MemoryError) else raised
+        try:
+            if error is None:
+                future.set_result(result)
+            else:
+                future.set_exception(error)
+            # The executor resumes coroutines only when it wakes up.
+            wake(self._executor)
         except MemoryError:
             # Without a result, callbacks that wait for it would be blocked forever.
             os._exit(1)
-
-    # Without memory a thread may end before it calls the function. Thread.start would wait for it.
-    weakref.finalize(run, end).atexit = False
-    try:
-        _thread.start_new_thread(run, ())
-    except RuntimeError as error:
-        msg = 'no thread can be started'
-        raise MemoryError(msg) from error
-    return future
 
 
 def wake(executor: Executor | None) -> None:

@@ -21,7 +21,7 @@ from std_srvs.srv import Trigger
 
 from sdf_pose_bridge.errors import AddressError, SdfError
 from sdf_pose_bridge.problems import folded
-from sdf_pose_bridge.ros.background import CoroutineLock, PollingThread, run_in_thread
+from sdf_pose_bridge.ros.background import CoroutineLock, PollingThread, Worker
 from sdf_pose_bridge.ros.cdr import NANOSECONDS
 from sdf_pose_bridge.ros.diagnostics import Diagnostics, PERIOD_S
 from sdf_pose_bridge.ros.file_follower import FileFollower
@@ -60,11 +60,12 @@ class SdfPoseBridge:
     :param node: the node, with declared parameters and an executor.
     :param frames: the frames of the scene, which are published.
     :param parameter_services: those of the node, which answer from then on.
+    :param worker: does what would block the executor.
     """
 
     def __init__(
         self, node: Node, frames: PublishedFrames, settings: Settings, loaded: LoadedScene,
-        reader: SceneReader, parameter_services: ParameterServices,
+        reader: SceneReader, parameter_services: ParameterServices, worker: Worker,
     ) -> None:
         self._node = node
         self._logger = node.get_logger()
@@ -72,6 +73,7 @@ class SdfPoseBridge:
         self._settings = settings
         self._loaded = loaded
         self._reader = reader
+        self._worker = worker
         self._joint_states: JointStates | None = None
         self._diagnostics = Diagnostics(
             node, lambda: self._joint_states.unreported if self._joint_states else MissingJoints())
@@ -114,13 +116,13 @@ class SdfPoseBridge:
     # Loading
 
     def _load(self, settings: Settings) -> Future:
-        return run_in_thread(
-            self._node, lambda: self._reader.loaded_scene(settings.load_request))
+        return self._worker.run(lambda: self._reader.loaded_scene(settings.load_request))
 
     async def _show(self, loaded: LoadedScene) -> None:
         """Publish a scene on the topics of the settings, unless they would be too many."""
         check_number_of_topics(self._settings.joint_states_topics, loaded.joint_positions)
-        frames = await frames_from_scene(self._node, loaded, self._settings, self._frames)
+        frames = await frames_from_scene(
+            self._node, self._worker, loaded, self._settings, self._frames)
         async with self._publishing:
             before, self._loaded, self._frames = self._loaded, loaded, frames
             self._follow_joints()
@@ -132,9 +134,9 @@ class SdfPoseBridge:
             if self._joint_states is not None:
                 self._joint_states.publish_topics()
         if loaded is not before:
-            await run_in_thread(self._node, lambda: self._follower.follow(loaded))
-            for line in await run_in_thread(
-                    self._node, lambda: lines_about_lost_frames(before.tree, loaded.tree)):
+            await self._worker.run(lambda: self._follower.follow(loaded))
+            for line in await self._worker.run(
+                    lambda: lines_about_lost_frames(before.tree, loaded.tree)):
                 self._logger.warning(line)
             self._report_success()
             self._publish_robot_description()
@@ -199,7 +201,7 @@ class SdfPoseBridge:
             files = files_behind_error(error, self._settings.load_request)
             self._follower.retry_after(error)
             with contextlib.suppress(MemoryError):  # it is read again then
-                await run_in_thread(self._node, lambda: self._follower.follow_also(files))
+                await self._worker.run(lambda: self._follower.follow_also(files))
             return self._lines_from_error(error)
         return []
 
@@ -235,8 +237,8 @@ class SdfPoseBridge:
         await self._process_messages()
         loaded = self._loaded
         try:
-            answer: SetPose.Response = await run_in_thread(
-                self._node, lambda: set_pose(request, loaded, self._reader))
+            answer: SetPose.Response = await self._worker.run(
+                lambda: set_pose(request, loaded, self._reader))
             if not request.dry_run:
                 await self._show(await self._load(self._settings))
         except Exception as error:  # noqa: BLE001 - the client must be answered
@@ -247,7 +249,7 @@ class SdfPoseBridge:
     async def _check_files(self) -> None:
         with contextlib.suppress(MemoryError):  # they are checked again after a period
             failure = None
-            if await run_in_thread(self._node, self._follower.has_to_read):
+            if await self._worker.run(self._follower.has_to_read):
                 failure = await self._reload()
             self._report_failure(self._follower.failure_of_period(failure))
 
@@ -316,6 +318,7 @@ async def start_bridge(
     :param reader: reads files.
     :param parameter_services: the parameter services of the node.
     """
-    frames = await frames_from_scene(node, loaded, settings, frames)
+    worker = Worker(node)
+    frames = await frames_from_scene(node, worker, loaded, settings, frames)
     await frames.publish_topics()
-    SdfPoseBridge(node, frames, settings, loaded, reader, parameter_services)
+    SdfPoseBridge(node, frames, settings, loaded, reader, parameter_services, worker)

@@ -22,7 +22,7 @@ from rclpy.publisher import Publisher
 from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge.geometry.chains import Indices
-from sdf_pose_bridge.ros.background import run_in_thread
+from sdf_pose_bridge.ros.background import Worker
 from sdf_pose_bridge.ros.cdr import StampedRecords
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.publishers import Publishers, Topic
@@ -38,11 +38,12 @@ TF = Topic('/tf', TFMessage, depth=100, is_latched=False, is_overridable=True)
 
 
 async def frames_from_scene(
-    node: Node, loaded: LoadedScene, settings: Settings, before: PublishedFrames,
+    node: Node, worker: Worker, loaded: LoadedScene, settings: Settings, before: PublishedFrames,
 ) -> PublishedFrames:
     """
     Make the messages and choose the topics of the frames of a scene; nothing is published.
 
+    :param worker: makes the messages; those of many frames take long.
     :param before: the frames that these ones replace.
     """
     name, logger, publishers = (
@@ -59,8 +60,7 @@ async def frames_from_scene(
             has_transforms=settings.publish_transforms)
         return frames, topics
 
-    # The messages of many frames take long.
-    made: tuple[PublishedFrames, PoseTopics] = await run_in_thread(node, frames_and_topics)
+    made: tuple[PublishedFrames, PoseTopics] = await worker.run(frames_and_topics)
     frames, topics = made
     if topics.warning:
         logger.warning(topics.warning)

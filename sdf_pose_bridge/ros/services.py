@@ -27,7 +27,7 @@ from sdf_pose_bridge.geometry.converted_rotation import converted_rotation
 from sdf_pose_bridge.geometry.formats import converted_poses, POSE_FORMATS, PoseFormatError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import RotationError
-from sdf_pose_bridge.ros.background import CoroutineLock, run_in_thread
+from sdf_pose_bridge.ros.background import Worker
 from sdf_pose_bridge.ros.scene_reader import SceneReader
 from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadedScene
 from sdf_pose_bridge.tf.lookup import PoseLookup
@@ -53,19 +53,18 @@ def add_services(node: Node, lookup: Callable[[], Awaitable[PoseLookup]]) -> Non
     :param lookup: returns the current look-up of poses.
     """
     logger, clock, group = node.get_logger(), node.get_clock(), ReentrantCallbackGroup()
-    # Requests that may take long are answered in a thread, one after the other.
-    turn = CoroutineLock(node)
+    # Answers requests that may take long.
+    worker = Worker(node)
 
     def answered(answer: Answer, request: Any, response: Any) -> Any:
         return response_from_answer(answer, request, response, logger.error)
 
     async def answered_in_thread(answer: Answer, request: Any, response: Any) -> Any:
-        async with turn:
-            try:
-                return await run_in_thread(node, lambda: answered(answer, request, response))
-            except MemoryError as error:
-                response.message = str(error)
-                return response
+        try:
+            return await worker.run(lambda: answered(answer, request, response))
+        except MemoryError:
+            response.message = 'out of memory'
+            return response
 
     async def lookup_pose(request: LookupPose.Request, response: LookupPose.Response) -> Any:
         current = await lookup()

@@ -13,7 +13,7 @@ from std_msgs.msg import ColorRGBA, Header
 from visualization_msgs.msg import Marker, MarkerArray
 
 from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.ros.background import run_in_thread
+from sdf_pose_bridge.ros.background import Worker
 from sdf_pose_bridge.ros.log_lines import lines_from_error, lines_from_warnings
 from sdf_pose_bridge.ros.publishers import SwitchedPublisher, Topic
 from sdf_pose_bridge.ros.scene_reader import SceneReader
@@ -33,6 +33,7 @@ class VisualPublisher:
 
     def __init__(self, node: Node, reader: SceneReader, loaded: LoadedScene) -> None:
         self._node = node
+        self._worker = Worker(node)
         self._reader = reader
         self._loaded = loaded
         self._shown: LoadedScene | None = None
@@ -55,8 +56,8 @@ class VisualPublisher:
             self._node.executor.create_task(self._publish, self._loaded)
 
     async def _publish(self, loaded: LoadedScene) -> None:
-        message, lines = await run_in_thread(
-            self._node, lambda: _message_and_warnings(loaded, self._reader))
+        message, lines = await self._worker.run(
+            lambda: _message_and_warnings(loaded, self._reader))
         if loaded is not self._loaded:
             return
         for line in lines:

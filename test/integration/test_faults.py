@@ -157,27 +157,28 @@ def test_a_change_without_descriptors_is_read_once_there_are_some(start, file, l
     assert not [line for line in bridge.lines if 'internal error' in line]
 
 
-def address_space(pid):
-    """Return how much a process has, in bytes."""
+def data_bytes(pid):
+    """Return how much memory of its own a process has, without what it has only reserved."""
     status = Path(f'/proc/{pid}/status').read_text(encoding='utf-8')
-    return 1024 * int(status.partition('VmSize:')[2].split()[0])
+    return 1024 * int(status.partition('VmData:')[2].split()[0])
 
 
 def test_without_memory_for_what_was_read_the_bridge_goes_on_or_ends(start, file, listener):
     bridge = start(file)
     assert reload(listener).success
-    _, hard = resource.prlimit(bridge.pid, resource.RLIMIT_AS)
-    limit = address_space(bridge.pid) + 4_000_000
-    resource.prlimit(bridge.pid, resource.RLIMIT_AS, (limit, hard))
+    _, hard = resource.prlimit(bridge.pid, resource.RLIMIT_DATA)
+    # The frames need 35 MB.
+    limit = data_bytes(bridge.pid) + 10_000_000
+    resource.prlimit(bridge.pid, resource.RLIMIT_DATA, (limit, hard))
     replace(file, world(2, extra=''.join(
-        f'<model name="m{i}"><link name="l"/></model>' for i in range(20_000))))
+        f'<model name="m{i}"><link name="l"/></model>' for i in range(10_000))))
     try:
         bridge.wait_for_line('there is not enough memory to read the file')
     except AssertionError:
         # Libraries of the middleware may end the process.
         assert bridge.wait_for_end() not in (0, None)
         return
-    resource.prlimit(bridge.pid, resource.RLIMIT_AS, (hard, hard))
+    resource.prlimit(bridge.pid, resource.RLIMIT_DATA, (hard, hard))
     wait_for_x(listener, 2.0)
     bridge.send(signal.SIGTERM)
     assert bridge.wait_for_end() == 0

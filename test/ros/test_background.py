@@ -15,8 +15,8 @@ from sdf_pose_bridge.ros import background
 from sdf_pose_bridge.ros.background import (
     CoroutineLock,
     PollingThread,
-    run_in_thread,
     run_other_callbacks,
+    Worker,
 )
 
 SECONDS = 20.0
@@ -41,7 +41,7 @@ def finished(node, *callbacks):
 
 def test_a_function_runs_in_another_thread(node):
     async def callback():
-        return await run_in_thread(node, threading.current_thread)
+        return await Worker(node).run(threading.current_thread)
 
     thread = finished(node, callback)
     assert thread is not threading.current_thread()
@@ -52,7 +52,7 @@ def test_other_callbacks_run_while_a_thread_is_awaited(node):
     goes_on = threading.Event()
 
     async def callback():
-        return await run_in_thread(node, lambda: goes_on.wait(SECONDS))
+        return await Worker(node).run(lambda: goes_on.wait(SECONDS))
 
     assert finished(node, goes_on.set, callback)
 
@@ -60,7 +60,7 @@ def test_other_callbacks_run_while_a_thread_is_awaited(node):
 def test_an_exception_in_a_thread_is_raised_where_it_is_awaited(node):
     async def callback():
         with pytest.raises(ZeroDivisionError):
-            await run_in_thread(node, lambda: 1 / 0)
+            await Worker(node).run(lambda: 1 / 0)
         return 'caught'
 
     assert finished(node, callback) == 'caught'
@@ -76,21 +76,10 @@ def test_a_thread_without_memory_has_a_result_that_keeps_nothing(node):
 
     async def callback():
         with pytest.raises(MemoryError):
-            await run_in_thread(node, use_all_memory)
+            await Worker(node).run(use_all_memory)
         return kept[0]()
 
     assert finished(node, callback) is None
-
-
-def test_a_thread_that_ends_before_it_calls_the_function_is_without_memory(node, monkeypatch):
-    monkeypatch.setattr('_thread.start_new_thread', lambda *_: None)
-
-    async def callback():
-        with pytest.raises(MemoryError):
-            await run_in_thread(node, Large)
-        return 'answered'
-
-    assert finished(node, callback) == 'answered'
 
 
 def test_two_coroutines_alternate(node):
@@ -138,7 +127,7 @@ def test_a_lock_is_released_when_python_ends_after_the_executor(node):
 
 def test_a_thread_may_end_after_the_executor_was_shut_down(node):
     goes_on, has_ended = threading.Event(), threading.Event()
-    future = run_in_thread(node, goes_on.wait)
+    future = Worker(node).run(goes_on.wait)
     future.add_done_callback(lambda _: has_ended.set())
     node.executor.shutdown()
     goes_on.set()
