@@ -258,7 +258,7 @@ class _Builder:
             dependents[other].add(index)
         found = list(self._unresolved)
         for other in found:
-            new = sorted(dependents[other] - self._unresolved.keys())
+            new = sorted(each for each in dependents[other] if each not in self._unresolved)
             self._unresolved.update(dict.fromkeys(new, self._unresolved[other]))
             found += new
         if self._problems.errors:

@@ -135,11 +135,14 @@ MISSING = '<include><uri>none.sdf</uri><name>x</name></include>'
         f'<frame name="f{i}" attached_to="λ{i}"/>' for i in range(50)) + '</model>'),
     model_file(f'{MISSING}<model name="{"n" * 300}">{LINK}' + ''.join(
         f'<frame name="f{i}" attached_to="{"a::" * 300}x"/>' for i in range(1000)) + '</model>'),
+    model_file('<link name="l">' + ''.join(
+        f'<visual name="v{i}"><pose relative_to="n{i}"/></visual>' for i in range(20_000))
+        + '</link>'),
 ], ids=['chain to a missing file', 'long path to a missing file', 'attributes', 'not UTF-8',
         'long tag', 'placement frames at the end of a chain', 'errors in deep models',
         'flags of an old axis', 'old name of many scopes',
         'old name of too many scopes', 'hints from names beyond ASCII',
-        'long references to a missing file'])
+        'long references to a missing file', 'unknown references'])
 def test_time_grows_with_the_size_of_a_file_and_not_faster(text):
     begin = time.thread_time()
     with contextlib.suppress(SdfError):
