@@ -170,10 +170,11 @@ class _Builder:
         if details.is_static:
             found = self._scopes.frame(model, name) if name else None
             return default if found is None else found
-        if not name and default == NO_ELEMENT and model not in self._elements.missing_includes:
+        if default == NO_ELEMENT and model not in self._elements.missing_includes:
             msg = (f'model "{self._scopes.names[model]}" has no link and no nested model; only a '
                    'static model may have none')
             self._problems.error(ModelWithoutLinkError(msg, self._elements.place(model)))
+            return default
         return self._frame(model, name, default, 'canonical_link')
 
     def _canonical_links(self, canonical: Mapping[int, int], bodies: Indices) -> Indices:

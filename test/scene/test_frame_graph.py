@@ -61,6 +61,8 @@ REFUSED = {
     'MODEL_WITHOUT_LINK': [
         model_file(''), model_file('<frame name="f"/>'), model_file('<static>false</static>'),
         model_file(A + '<model name="n"/>'), world_file('<model name="m"/>'),
+        model_file('', attributes='canonical_link="zzz"'),
+        model_file('<frame name="f"/>', attributes='canonical_link="f"'),
     ],
 }
 
