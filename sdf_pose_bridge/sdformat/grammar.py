@@ -43,6 +43,7 @@ class ValueType(enum.Enum):
     INTEGER = 'int', 'an integer', 1
     UNSIGNED = 'uint', 'an integer', 1
     NUMBER = 'double', 'a number', 1
+    FLOAT = 'float', 'a number of single precision', 1
     TIME = 'time', 'a time of two integers, seconds and nanoseconds', 2
     TWO_NUMBERS = 'vector2', 'two numbers', 2
     THREE_NUMBERS = 'vector3', 'three numbers', 3
@@ -120,7 +121,7 @@ class Kind(enum.IntEnum):
     PARTICLE_EMITTER = 'link', (
         '@name! @type!:emitter_type pose emitting:bool duration:double size,particle_size:vector3 '
         'lifetime:double rate,min_velocity,max_velocity,scale_rate:double[0,] '
-        'color_start,color_end:color color_range_image topic particle_scatter_ratio:double '
+        'color_start,color_end:color color_range_image topic particle_scatter_ratio:float '
         'material')
     PROJECTOR = 'link', (
         '@name! pose texture!:string fov,near_clip,far_clip:double visibility_flags:uint plugin')

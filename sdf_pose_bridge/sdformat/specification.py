@@ -213,7 +213,7 @@ _CONTENTS = {
     'logical_camera': '/ near!,far!,aspect_ratio!,horizontal_fov!:double',
     'magnetometer': '/ x y z',
     'material': (
-        '/ script shader render_order:double lighting:bool ambient,diffuse,specular:color '
+        '/ script shader render_order:float lighting:bool ambient,diffuse,specular:color '
         'shininess:double emissive:color double_sided:bool pbr'),
     'material/script': 'uri+ name!',
     'mesh': '/mesh_shape @optimization convex_decomposition uri! submesh scale:vector3',

@@ -53,6 +53,7 @@ A number with fewer characters, and an exponent of two digits at most, is in the
 """
 _SHORTEST_AXIS = 9.999999974752427e-07
 """The float that is nearest to 1e-6, as libsdformat compares with it."""
+_SMALLEST_FLOAT, _LARGEST_FLOAT = 2.0 ** -126, (2.0 - 2.0 ** -23) * 2.0 ** 127
 _NOT_ZERO = re.compile(r'[^eE]*[1-9]')
 _BOOLEANS = {'true': True, '1': True, 'false': False, '0': False}
 _INTEGER_RANGES = {
@@ -155,10 +156,17 @@ def _is_of_type(text: str, numbers: Sequence[float], value_type: ValueType) -> b
         # A color may be without its last number.
         return min(count, 3) <= len(numbers) <= count and (
             value_type is not ValueType.COLOR
-            or not [number for number in numbers if number < 0.0 or number > 1.0])
+            or not [number for number in numbers if number < 0.0 or number > 1.0]) and (
+            value_type is not ValueType.FLOAT or _is_single_precision(numbers[0]))
     if value_type is ValueType.BOOLEAN:
         return boolean_from_text(text) is not None
     return value_type is not ValueType.FRAME or text != ROOT_FRAME
+
+
+def _is_single_precision(number: float) -> bool:
+    """Return whether C's ``strtof`` reads a number without a range error."""
+    return not math.isfinite(number) or number == 0.0 or (
+        _SMALLEST_FLOAT <= abs(number) <= _LARGEST_FLOAT)
 
 
 def numbers_from_text(text: str, value_type: ValueType) -> Sequence[float]:
@@ -185,7 +193,7 @@ def numbers_from_text(text: str, value_type: ValueType) -> Sequence[float]:
             for number in _integer(word.strip(), ValueType.INTEGER)]
     if value_type in _INTEGER_RANGES:
         return _integer(stripped, value_type)
-    if value_type in (ValueType.NUMBER, ValueType.COLOR):
+    if value_type in (ValueType.NUMBER, ValueType.FLOAT, ValueType.COLOR):
         words = [stripped] if count == 1 else stripped.split()
         numbers = [number for word in words for number in number_from_word(word)]
         return numbers if len(numbers) == len(words) else ()
