@@ -254,9 +254,9 @@ def test_a_large_value_is_not_repeated(start_bridge, start_listener, tmp_path):
 
 def test_what_is_searched_among_many_long_names_keeps_nobody_waiting(
         bridge, file, start_listener):
-    frames = ''.join(f'<frame name="{LONG_NAME}{number}"/>' for number in range(40_000))
+    frames = ''.join(f'<frame name="{LONG_NAME}{number}"/>' for number in range(20_000))
     replace(file, world(1, extra=frames))
-    bridge.wait_for_line('publishing 40002 frames')
+    bridge.wait_for_line('publishing 20002 frames')
     listener = start_listener()
     waiting = Waiting(listener, bridge.pid)
     answer = listener.ask(
