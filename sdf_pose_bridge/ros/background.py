@@ -61,7 +61,7 @@ class Worker:
         try:
             result = function()
         except Exception as raised:  # noqa: BLE001 - raised where the future is awaited
-            # The traceback of the one that was raised references the objects of the function.
+            # Another MemoryError, as the traceback of this one keeps the objects of the function.
             error = MemoryError() if isinstance(raised, MemoryError) else raised
         try:
             if error is None:

@@ -53,7 +53,7 @@ def add_services(node: Node, lookup: Callable[[], Awaitable[PoseLookup]]) -> Non
     :param lookup: returns the current look-up of poses.
     """
     logger, clock, group = node.get_logger(), node.get_clock(), ReentrantCallbackGroup()
-    # Answers requests that may take long.
+    # It answers requests that may take long, one after the other.
     worker = Worker(node)
 
     def answered(answer: Answer, request: Any, response: Any) -> Any:

@@ -154,10 +154,12 @@ def _is_of_type(text: str, numbers: Sequence[float], value_type: ValueType) -> b
     count = value_type.count
     if count:
         # A color may be without its last number.
-        return min(count, 3) <= len(numbers) <= count and (
-            value_type is not ValueType.COLOR
-            or not [number for number in numbers if number < 0.0 or number > 1.0]) and (
-            value_type is not ValueType.FLOAT or _is_single_precision(numbers[0]))
+        if not min(count, 3) <= len(numbers) <= count:
+            return False
+        if value_type is ValueType.FLOAT:
+            return _is_single_precision(numbers[0])
+        return value_type is not ValueType.COLOR or not [
+            number for number in numbers if number < 0.0 or number > 1.0]
     if value_type is ValueType.BOOLEAN:
         return boolean_from_text(text) is not None
     return value_type is not ValueType.FRAME or text != ROOT_FRAME

@@ -39,11 +39,14 @@ def finished(node, *callbacks):
     return tasks[-1].result()
 
 
-def test_a_function_runs_in_another_thread(node):
-    async def callback():
-        return await Worker(node).run(threading.current_thread)
+def test_functions_run_in_one_other_thread(node):
+    worker = Worker(node)
 
-    thread = finished(node, callback)
+    async def callback():
+        return [await worker.run(threading.current_thread) for _ in range(2)]
+
+    thread, same_thread = finished(node, callback)
+    assert thread is same_thread
     assert thread is not threading.current_thread()
     assert thread.daemon
 
