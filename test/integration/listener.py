@@ -68,6 +68,19 @@ class Listener:
         self.wait(
             lambda: collection.keys() >= set(keys), lambda: sorted(set(keys) - set(collection)))
 
+    def names_and_types(self, kind, node):
+        """
+        Return what a node has that is known here so far, as types by name.
+
+        :param kind: ``'publisher'``, ``'subscriber'`` or ``'service'``.
+        :param node: the full name of the node, in the root namespace.
+        """
+        get = getattr(self.node, f'get_{kind}_names_and_types_by_node')
+        try:
+            return dict(get(node.removeprefix('/'), '/'))
+        except RuntimeError:  # The node is not known yet, even where a message of it has come.
+            return {}
+
     def ask(self, service_type, name, request):
         """Send a request to a service, and return its :class:`Answer`."""
         # Kept, as programs do.

@@ -39,11 +39,9 @@ def write_file(tmp_path):
 
 def joint_topics(tf):
     """Return the topics of joint states that the bridge follows."""
-    try:
-        names = tf.listener.node.get_subscriber_names_and_types_by_node(BRIDGE[1:], '/')
-    except RuntimeError:  # the node is not known yet
-        return set()
-    return {name for name, types in names if types == ['sensor_msgs/msg/JointState']}
+    subscribed = tf.listener.names_and_types('subscriber', BRIDGE)
+    return {
+        name for name, types in subscribed.items() if types == ['sensor_msgs/msg/JointState']}
 
 
 def wait_for_topics(tf, *topics):

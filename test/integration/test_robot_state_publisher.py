@@ -78,9 +78,9 @@ def write_file(tmp_path):
 
 
 def topics_of_node(listener):
-    published = dict(listener.node.get_publisher_names_and_types_by_node(NODE[1:], '/'))
-    subscribed = dict(listener.node.get_subscriber_names_and_types_by_node(NODE[1:], '/'))
-    return {*published} - {'/rosout', '/parameter_events'}, {*subscribed}
+    published = listener.names_and_types('publisher', NODE).keys()
+    subscribed = listener.names_and_types('subscriber', NODE).keys()
+    return published - {'/rosout', '/parameter_events'}, subscribed
 
 
 def test_the_node_has_the_topics_of_robot_state_publisher_and_no_other(start, listener):

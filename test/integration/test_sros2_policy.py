@@ -31,13 +31,8 @@ def listener(start_shared_bridge, start_shared_listener, tmp_path_factory):
     ('service', 'reply', 'service', f'{BRIDGE}/set_parameters_atomically'),
 ])
 def test_the_policy_allows_what_the_node_offers(listener, what, action, kind, last):
-    names_and_types = getattr(listener.node, f'get_{kind}_names_and_types_by_node')
-
     def names():
-        try:
-            return [name for name, _ in names_and_types(BRIDGE[1:], '/')]
-        except RuntimeError:  # the node is not known yet
-            return []
+        return listener.names_and_types(kind, BRIDGE).keys()
 
     listener.wait(lambda: last in names(), names)
     policy = etree.parse(Path(
