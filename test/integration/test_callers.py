@@ -109,9 +109,8 @@ from std_srvs.srv import Trigger
 rclpy.init()
 node = rclpy.create_node('leaving')
 client = node.create_client(Trigger, '{BRIDGE}/reload')
-client.wait_for_service()
-client.call_async(Trigger.Request())
-print('asked', flush=True)
+# The first requests are lost, until the bridge has discovered the client.
+node.create_timer(0.5, lambda: client.call_async(Trigger.Request()))
 rclpy.spin(node)
 """
 
