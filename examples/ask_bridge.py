@@ -72,9 +72,12 @@ class Client(Node):
         service = f'{self.bridge}/{name}'
         client = self.create_client(service_type, service)
         self.wait(client.service_is_ready, f'service {service}')
-        future = client.call_async(request)
-        self.wait(future.done, f'answer of {service}')
-        response = future.result()
+        futures = [client.call_async(request)]
+        # The middleware may lose an answer to a client that it has not discovered completely.
+        repeat = self.create_timer(2.0, lambda: futures.append(client.call_async(request)))
+        self.wait(lambda: any(future.done() for future in futures), f'answer of {service}')
+        repeat.cancel()
+        response = next(future.result() for future in futures if future.done())
         if not response.success:
             raise NoAnswerError(response.message)
         return response

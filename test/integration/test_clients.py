@@ -60,8 +60,10 @@ def start_client(request, shared_ros_domain):
 
 @pytest.fixture(name='bridge', scope='module')
 def bridge_of_work_cell(start_shared_bridge):
-    bridge = start_shared_bridge('--ros-args', '-p', f'sdf_file:={EXAMPLES / "work_cell.sdf"}')
-    return bridge.wait_until_started()
+    # With a rate a client asks again where the middleware has lost the first answer to it.
+    return start_shared_bridge(
+        '--ros-args', '-p', f'sdf_file:={EXAMPLES / "work_cell.sdf"}', '-p', 'publish_rate:=1.0',
+    ).wait_until_started()
 
 
 @pytest.mark.usefixtures('bridge')
