@@ -73,10 +73,14 @@ class Client(Node):
         client = self.create_client(service_type, service)
         self.wait(client.service_is_ready, f'service {service}')
         futures = [client.call_async(request)]
-        # The middleware may lose an answer to a client that it has not discovered completely.
-        repeat = self.create_timer(2.0, lambda: futures.append(client.call_async(request)))
+
+        def ask_again() -> None:
+            timer.cancel()
+            futures.append(client.call_async(request))
+
+        # The middleware may lose the answer to a client that it has not discovered completely.
+        timer = self.create_timer(2.0, ask_again)
         self.wait(lambda: any(future.done() for future in futures), f'answer of {service}')
-        repeat.cancel()
         response = next(future.result() for future in futures if future.done())
         if not response.success:
             raise NoAnswerError(response.message)
