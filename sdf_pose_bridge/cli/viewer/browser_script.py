@@ -25,12 +25,12 @@ _STYLE = """<style>
   /* A section is folded while its content, which is not its last element, is hidden. */
   .mantine-Paper-root:has(> [aria-hidden=true]:not(:last-child)) {border-width: 1px 0 0}
   .mantine-Paper-root > [aria-hidden=true] + :last-child > div {padding: 4px !important}
-  div:has(> .asked), div:has(> .asked) + * {display: none}
+  [data-floating-window]:has(.asked), .mantine-Tabs-root:has(.asked) {display: none}
   .over-scene {position: absolute; inset: 0; overflow: hidden; pointer-events: none}
   .axis-cross {position: absolute; right: 8px; top: 8px; width: 60px; stroke-width: 3}
   .labels div {position: absolute; padding: 0 2px; font: 12px/14px sans-serif; white-space: pre;
     background: #fffc; color: #212529}
-  .strip {position: fixed; left: 8px; bottom: 8px; z-index: 8; padding: 4px 10px; font: 13px
+  .strip {position: fixed; left: 8px; bottom: 8px; z-index: 11; padding: 4px 10px; font: 13px
     sans-serif; background: #fffe; color: #212529; border: 1px solid #adb5bd; border-radius: 4px}
   .strip:empty {display: none}
   .strip label {display: inline-block; padding: 3px 10px; margin: 4px 6px 2px 0; cursor: pointer;
@@ -124,11 +124,8 @@ _SCRIPT = """<script>(() => {
     }
     return placed;
   };
-  // A folded panel gives nothing; what it gave before stays.
-  const last = {};
-  const given = (name, otherwise) => (
-    last[name] = document.querySelector(`[data-${name}]`)?.dataset[name] ?? last[name])
-    ?? otherwise;
+  const given = (name, otherwise) =>
+    document.querySelector(`[data-${name}]`)?.dataset[name] ?? otherwise;
   let listed, names;
   const namesInScene = () => {
     const text = given('names', '{"frames": [], "bodies": []}');

@@ -142,17 +142,21 @@ class Page:
     """The page of a file in one tab of a browser; ``wake`` is set when it has to act."""
 
     def __init__(
-        self, client: viser.ClientHandle, shown: ShownScene, wake: threading.Event, units: Units,
-        meshes: MeshReader, find_change: FindChange | None,
+        self, client: viser.ClientHandle, shown: ShownScene, errors: str, wake: threading.Event,
+        units: Units, meshes: MeshReader, find_change: FindChange | None,
     ) -> None:
         self._client, self._shown, self._units, self._meshes = client, shown, units, meshes
         self._events, self._hidden, gui = Events(wake), {*HIDDEN_AT_FIRST}, client.gui
         self._dock_panel()
         self._reasons = gui.add_html('')
-        self._strip, self._names, self._labels, self._opacity = (
-            gui.add_html('') for _ in range(4))
-        gui.add_html('<div class="asked"></div>')
-        asked = gui.add_text('asked', '')
+        # In a panel of their own, as a folded one has no content.
+        data = gui.add_panel()
+        data.float()
+        with data.add_tab('data'):
+            self._errors, self._strip, self._names, self._labels, self._opacity = (
+                gui.add_html('') for _ in range(5))
+            gui.add_html('<div class="asked"></div>')
+            asked = gui.add_text('asked', '')
         self._events.when(asked.on_update, lambda: self._answer(asked.value.partition(' ')[2]))
         self._edit = None if find_change is None else PoseEdit(
             client, shown, find_change, self._events)
@@ -164,6 +168,7 @@ class Page:
         self._node_names = cycle(('/drawing', '/other drawing'))
         self._drawing = self._new_drawing()
         self.show(shown)
+        self.show_errors(errors)
         if client.camera.aspect < 1.0:
             self._look('home')
 
@@ -175,6 +180,10 @@ class Page:
                 self._switches.remove()
                 self._switches = self._add_switches(self._switches.order)
             self._refresh()
+
+    def show_errors(self, errors: str) -> None:
+        """Show the errors of the file, in HTML, over its last scene."""
+        self._errors.content = html_of_data('errors', errors)
 
     def act(self) -> None:
         """Process the requests of the tab."""
@@ -314,9 +323,10 @@ class Pages:
             self._shown, meshes, HIDDEN_AT_FIRST - {'all names'})
         self.reasons = visible.reasons
         """Lines about shapes that cannot be drawn."""
-        self._server, self.address = server_for_its_owner(port, printable(Path(scene.path).name))
-        self._server.gui.add_html(html_of_data('path', str(Path(scene.path).resolve())))
-        self._errors = self._server.gui.add_html('')
+        path = Path(scene.path)
+        self._server, self.address = server_for_its_owner(
+            port, printable(path.name), html_of_data('path', str(path.resolve())))
+        self._errors = ''
         camera = self._server.initial_camera
         camera.position, camera.look_at = visible.home
         camera.fov = FIELD_OF_VIEW_RAD
@@ -348,14 +358,16 @@ class Pages:
 
     def show_errors(self, lines: Iterable[str]) -> None:
         """Show the errors of a file, a line for each, over its last scene."""
-        self._errors.content = html_of_data('errors', html_of_lines('errors', lines))
+        self._errors = html_of_lines('errors', lines)
+        for page in self._pages.values():
+            page.show_errors(self._errors)
 
     def act(self, seconds: float) -> None:
         """Process the requests of browsers; wait no longer than this for them."""
         self._wake.wait(seconds)
         self._wake.clear()
         self._pages = {
-            number: self._pages.get(number) or self._new_page(client, self._shown)
+            number: self._pages.get(number) or self._new_page(client, self._shown, self._errors)
             for number, client in self._server.get_clients().items()}
         for page in self._pages.values():
             page.act()

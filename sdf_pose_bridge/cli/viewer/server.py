@@ -59,11 +59,14 @@ class Events:
         return [self._asked.get_nowait() for _ in range(self._asked.qsize())]
 
 
-def server_for_its_owner(port: int, title: str) -> tuple[viser.ViserServer, str]:
+def server_for_its_owner(
+    port: int, title: str, data: str = '',
+) -> tuple[viser.ViserServer, str]:
     """
     Start a server for this user only, not for other machines, users or pages of other servers.
 
     :param port: its port, or the next one that is free; 0 for any.
+    :param data: elements of its page with data for the script.
     :return: the server, and the address of its page: with a secret in its path, without which
         requests are rejected.
     :raises CommandError: if this cannot be done with the installed viser.
@@ -74,7 +77,7 @@ def server_for_its_owner(port: int, title: str) -> tuple[viser.ViserServer, str]
     # A tab may be closed while its page is drawn.
     warnings.filterwarnings('ignore', '.* on a closed connection', UserWarning)
     secret = secrets.token_urlsafe(16)
-    page = page_with_script(_PAGE_OF_VISER.read_text(encoding='utf-8'), title).encode()
+    page = page_with_script(_PAGE_OF_VISER.read_text(encoding='utf-8'), title, data).encode()
     serve, guarded = websockets_server.serve, []
 
     def answer(connection: ServerConnection, request: Request) -> Response | None:

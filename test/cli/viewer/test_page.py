@@ -39,7 +39,7 @@ def scene_of(tmp_path):
 def page_of(scene_of, server, mesh_reader):
     """Returns the page of a file whose link has this content."""
     return lambda content, find_change=None: Page(
-        server, scene_of(content), Event(), Units(), mesh_reader, find_change)
+        server, scene_of(content), '', Event(), Units(), mesh_reader, find_change)
 
 
 def set_switches(page, value, *labels):
