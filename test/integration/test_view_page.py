@@ -127,7 +127,8 @@ IN_WINDOW = """(box => box && box.width > 0 && box.left >= 0 && box.top >= 0
 def is_in_window(element):
     """Return a condition: the element is wholly in the window, and nothing is above it."""
     return f"""(element => {IN_WINDOW}(element?.getBoundingClientRect())
-      && (box => element.contains(document.elementFromPoint(box.left + 3, box.top + 3)))(
+      && (box => element.contains(document.elementFromPoint(box.left + 3, box.top + 3))
+        && element.contains(document.elementFromPoint(box.right - 3, box.bottom - 3)))(
         element.getBoundingClientRect()))({element})"""
 
 
@@ -139,6 +140,7 @@ def sized_page(page, request):
     page.size(1366, 768)
 
 
+@pytest.mark.parametrize('sized_page', [(1366, 768), (800, 600), (500, 700)], indirect=True)
 def test_selected_frame_and_errors_are_in_view(sized_page, shown):
     select(sized_page, 'slide')
     strip = "document.querySelector('.strip')"
@@ -240,10 +242,13 @@ def test_file_is_followed(page, shown):
     page.wait_for(f"{ROWS}.some(row => row.textContent === 'added')")
 
 
-def test_errors_are_shown_above_the_last_scene(page, shown):
+def test_errors_are_shown_above_the_last_scene(page, shown, tmp_path):
     shown.file.write_text(TEXT.replace('<parent>base', '<parent>bass'))
     page.wait_for("document.querySelector('.errors')?.textContent.includes('cell.sdf:')")
     assert page.run(f'{ROWS}.length') == 5
+    with browser(tmp_path / 'browser') as later:
+        later.open(shown.address)
+        later.wait_for("document.querySelector('.strip .errors')")
     shown.file.write_text(TEXT)
     page.wait_for("!document.querySelector('.errors')")
 

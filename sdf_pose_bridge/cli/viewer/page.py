@@ -149,7 +149,8 @@ class Page:
         self._events, self._hidden, gui = Events(wake), {*HIDDEN_AT_FIRST}, client.gui
         self._dock_panel()
         self._reasons = gui.add_html('')
-        # In a panel of their own, as a folded one has no content.
+        # The script reads these in a panel that is not seen and never folded, as a folded one has
+        # no content.
         data = gui.add_panel()
         data.float()
         with data.add_tab('data'):
