@@ -50,10 +50,12 @@ def test_empty_file(mesh):
     assert mesh('mesh.obj', '').reason
 
 
+@pytest.mark.filterwarnings('ignore:invalid value:RuntimeWarning')
 def test_coordinate_that_is_not_finite(mesh):
     assert 'it has no surface' in mesh('mesh.stl', mesh_texts.STL.format(y='inf')).reason
 
 
+@pytest.mark.filterwarnings('ignore:overflow:RuntimeWarning')
 @pytest.mark.parametrize('scale', [1e300, float('nan')])
 def test_coordinate_that_is_too_large(mesh, scale):
     text = mesh_texts.gltf(mesh_texts.IN_FILE, scale=scale)
