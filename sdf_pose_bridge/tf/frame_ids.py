@@ -55,13 +55,13 @@ class FrameNaming(NamedTuple):
         rest = name.replace(SEPARATOR, self.separator).lstrip('/')
         return self.prefix + rest if rest else ''
 
-    def frame_ids_from_scene(self, scene: Scene, elements: Indices) -> list[str]:
+    def names_from_scene(self, scene: Scene, elements: Indices) -> list[str]:
         """
-        Make the frame ids of elements; frame ids that the file sets for sensors are not used.
+        Make the names of which frame ids are made; those that the file sets for sensors are not.
 
         :param elements: indices of elements, all of the same world or model file; not the index
             of a world or an implicit root.
-        :return: a frame id for each element; empty if its name consists of slashes only.
+        :return: a name for each element, as in SDF, with the kind where that is needed.
         """
         names = [scene.names[element] for element in elements.tolist()]
         kinds = scene.kinds[elements]
@@ -78,32 +78,38 @@ class FrameNaming(NamedTuple):
                 name if model == element else name.removeprefix(scene.names[model] + SEPARATOR)
                 for name, element, model in zip(
                     names, elements.tolist(), models.tolist(), strict=True)]
-        return list(map(self.frame_id_from_name, names))
+        return names
+
+    def frame_ids_from_scene(self, scene: Scene, elements: Indices) -> list[str]:
+        """Make the frame ids of elements, as :meth:`names_from_scene` makes names."""
+        return list(map(self.frame_id_from_name, self.names_from_scene(scene, elements)))
 
 
-def with_ids_of_sensors(
-    frame_ids: Mapping[int, str], scene: Scene, naming: FrameNaming, root_frame: str,
+def frame_ids_with_sensors(
+    names: Mapping[int, str], scene: Scene, naming: FrameNaming, root_frame: str,
 ) -> tuple[dict[int, str], dict[int, str]]:
     """
-    Use the frame ids that the file sets for sensors.
+    Make frame ids, and use those that the file sets for sensors.
 
-    :param frame_ids: the frame id of each published element, made of its name.
+    :param names: the name of each published element, as :meth:`FrameNaming.names_from_scene`
+        makes it.
     :return: the frame ids without those of sensors whose id belongs to another kind of element, or
-        of a sensor in the same place; and the frame id of each published sensor.
+        of a sensor in the same place; and the name of the frame of each published sensor.
     """
-    frame_ids = dict(frame_ids)
-    sensor_ids = {each: frame_ids[each] for each in frame_ids if each in scene.sensors}
+    frame_ids = {each: naming.frame_id_from_name(name) for each, name in names.items()}
+    sensor_names = {each: names[each] for each in names if each in scene.sensors}
     other_ids = {root_frame, *(
-        frame_id for element, frame_id in frame_ids.items() if element not in sensor_ids)}
+        frame_id for element, frame_id in frame_ids.items() if element not in sensor_names)}
     first_sensors: dict[str, int] = {}
-    for sensor in sensor_ids:
+    for sensor in sensor_names:
         if name := scene.sensors[sensor].frame_id:
-            frame_ids[sensor] = sensor_ids[sensor] = frame_id = naming.frame_id_from_name(name)
+            sensor_names[sensor] = name
+            frame_ids[sensor] = frame_id = naming.frame_id_from_name(name)
             first = first_sensors.get(frame_id)
             if frame_id in other_ids or (
                     first is not None and scene.parents[first] == scene.parents[sensor]
                     and scene.pose_of(first) == scene.pose_of(sensor)):
                 del frame_ids[sensor]
                 continue
-        first_sensors.setdefault(sensor_ids[sensor], sensor)
-    return frame_ids, sensor_ids
+        first_sensors.setdefault(frame_ids[sensor], sensor)
+    return frame_ids, sensor_names

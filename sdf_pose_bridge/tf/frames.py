@@ -9,7 +9,7 @@ SDFormat does not have. In URDF a joint is where its child link is, and has one 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 import math
 from typing import NamedTuple
 
@@ -19,11 +19,13 @@ from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.geometry.poses import (
     canonical_poses,
     canonical_relative_poses,
+    distance_and_angle,
     Pose,
     pose_product,
     PoseArray,
     relative_pose,
 )
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.frame_ids import FrameNaming
 from sdf_pose_bridge.tf.joint_motion import JointMotion
@@ -41,6 +43,9 @@ LINK_SUFFIX = '_frame'
 
 _SAME_PLACE = 1e-12
 """Frames that differ by less, in metres and halves of radians, are the same."""
+
+_SAME_PLACE_M, _SAME_PLACE_RAD = 1e-3, 2e-3
+"""The data of a sensor may be that far from their frame, as files round right angles."""
 
 
 class Frame(NamedTuple):
@@ -84,13 +89,13 @@ class Frames(NamedTuple):
 
 
 def optical_frames_of_cameras(
-    frames: Frames, sensor_ids: Mapping[int, str], scene: Scene, naming: FrameNaming,
+    frames: Frames, sensor_names: Mapping[int, str], scene: Scene, naming: FrameNaming,
 ) -> list[Frame]:
     """
     Make the optical frames of cameras.
 
     :param frames: the frames of elements.
-    :param sensor_ids: the frame id of each published sensor.
+    :param sensor_names: the name of the frame of each published sensor.
     :return: the optical frames, without those that the file has already.
     """
     indices: dict[str, int] = {}
@@ -98,10 +103,10 @@ def optical_frames_of_cameras(
         indices.setdefault(frame_id, index)
     poses: dict[str, Pose] = {}
     optical_frames = []
-    cameras = [sensor for sensor in sensor_ids if scene.sensors[sensor].is_camera]
+    cameras = [sensor for sensor in sensor_names if scene.sensors[sensor].is_camera]
     for camera in cameras:
         name = scene.sensors[camera].optical_frame_id
-        frame_id = naming.frame_id_from_name(name) if name else sensor_ids[camera] + OPTICAL_SUFFIX
+        frame_id = naming.frame_id_from_name(name or sensor_names[camera] + OPTICAL_SUFFIX)
         pose = pose_product(scene.pose_of(camera), OPTICAL_POSE)
         other = frames.owners.item(indices[frame_id]) if frame_id in indices else None
         if name and other is not None and other not in scene.sensors:
@@ -109,9 +114,42 @@ def optical_frames_of_cameras(
         if pose != (poses.get(frame_id) if other is None else scene.pose_of(other)):
             poses.setdefault(frame_id, pose)
             # A camera without a frame of its own uses the root frame.
-            parent = indices.get(sensor_ids[camera], ROOT_IS_PARENT)
+            camera_id = naming.frame_id_from_name(sensor_names[camera])
+            parent = indices.get(camera_id, ROOT_IS_PARENT)
             optical_frames.append(Frame(frame_id, camera, parent, pose))
     return optical_frames
+
+
+def check_frames_of_sensors(
+    frames: Frames, sensor_names: Iterable[int], scene: Scene, root_frame: str,
+    naming: FrameNaming, problems: Problems,
+) -> None:
+    """
+    Warn about each sensor whose data have the frame id of another element in another place.
+
+    Images of a camera may have the frame id of its optical frame.
+
+    :param frames: the frames of elements.
+    """
+    owners = {root_frame: 0, **dict(zip(frames.ids, frames.owners.tolist(), strict=True))}
+    for sensor in sensor_names:
+        details, pose = scene.sensors[sensor], scene.pose_of(sensor)
+        optical_pose = pose_product(pose, OPTICAL_POSE)
+        data_poses = (pose, optical_pose) if details.is_camera else (pose,)
+        for what, name, poses in (
+                ('frame id', details.frame_id, data_poses),
+                ('optical frame id', details.optical_frame_id, (optical_pose,))):
+            other = owners.get(naming.frame_id_from_name(name))
+            if other is None or other in scene.sensors:
+                continue
+            distance_m, angle_rad = min(
+                distance_and_angle(each, scene.pose_of(other)) for each in poses)
+            if distance_m > _SAME_PLACE_M or angle_rad > _SAME_PLACE_RAD:
+                away = f'{round(distance_m, 4):g} m and {round(math.degrees(angle_rad), 2):g}'
+                msg = (f'the {what} "{name}" of sensor "{scene.names[sensor]}" is that of a frame '
+                       f'{away} degrees away, where its data will appear; name a frame in the '
+                       'place of the sensor')
+                problems.warning(msg, scene.place(sensor))
 
 
 def is_same_place(pose: Pose) -> bool:
@@ -120,8 +158,8 @@ def is_same_place(pose: Pose) -> bool:
 
 
 def frames_at_joints(
-    frames: Frames, scene: Scene, motion: JointMotion, tf_parents: TfParents, prefix: str,
-    root_frame: str,
+    frames: Frames, scene: Scene, motion: JointMotion, tf_parents: TfParents,
+    naming: FrameNaming, root_frame: str,
 ) -> list[Frame]:
     """
     Make the frames between degrees of freedom, and those of joints away from their links.
@@ -130,7 +168,6 @@ def frames_at_joints(
     joints to links that are not published, which are not in the URDF.
 
     :param frames: all other frames, which keep their ids.
-    :param prefix: precedes the names of joints in frame ids.
     """
     rows = {owner: row for row, owner in enumerate(frames.owners.tolist())}
     used = {root_frame, *frames.ids}
@@ -146,7 +183,7 @@ def frames_at_joints(
             parent_body in rows or scene.parents[parent_body] < 0)
         parent = frames.parents.item(rows[body]) if is_published else NO_PARENT
         slide = SLIDE_SUFFIX if dof.is_screw else ''
-        frame_id = f'{prefix}{dof.name}{slide}{LINK_SUFFIX}'
+        frame_id = naming.frame_id_from_name(f'{dof.name}{slide}{LINK_SUFFIX}')
         if parent != NO_PARENT and frame_id not in used:
             used.add(frame_id)
             found.append(Frame(frame_id, len(scene.kinds) + index, parent, pose))

@@ -25,8 +25,13 @@ from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import ReadOnly, Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.anchors import AnchorModels, AnchorPatterns, detached_bodies
-from sdf_pose_bridge.tf.frame_ids import FrameNames, FrameNaming, with_ids_of_sensors
-from sdf_pose_bridge.tf.frames import Frames, frames_at_joints, optical_frames_of_cameras
+from sdf_pose_bridge.tf.frame_ids import frame_ids_with_sensors, FrameNames, FrameNaming
+from sdf_pose_bridge.tf.frames import (
+    check_frames_of_sensors,
+    Frames,
+    frames_at_joints,
+    optical_frames_of_cameras,
+)
 from sdf_pose_bridge.tf.joint_motion import JointMotion, MovingFrames
 from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT, tf_parents_from_scene, TfParents
 
@@ -59,6 +64,11 @@ class TfOptions(NamedTuple):
     """Whether moving joints follow ``joint_states``."""
     has_joint_links: bool = False
     """Whether the links without mass at joints of URDF are frames too."""
+
+    @property
+    def naming(self) -> FrameNaming:
+        """The rules for frame ids."""
+        return FrameNaming(self.frame_names, self.frame_separator, self.frame_prefix)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -137,15 +147,15 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
         publish does not exist; ``errors`` has all errors that were found.
     """
     options = options or TfOptions()
-    naming = FrameNaming(options.frame_names, options.frame_separator, options.frame_prefix)
+    naming = options.naming
     problems = Problems(scene.files)
     tf_parents = tf_parents_from_scene(scene)
     elements = _published_elements(scene, options, problems)
-    frame_ids, sensor_ids = with_ids_of_sensors(
-        dict(zip(elements.tolist(), _frame_ids(naming, scene, elements, problems), strict=True)),
+    frame_ids, sensor_names = frame_ids_with_sensors(
+        dict(zip(elements.tolist(), _names(naming, scene, elements, problems), strict=True)),
         scene, naming, options.root_frame)
     # The implicit root of a URDF is its link "world", unless the root frame has its frame id.
-    world_link = options.frame_prefix + WORLD_FRAME
+    world_link = naming.frame_id_from_name(WORLD_FRAME)
     if (scene.urdf_root == WORLD_FRAME and world_link != options.root_frame
             and Kind.LINK in _kinds(scene, options)):
         frame_ids = {0: world_link, **frame_ids}
@@ -154,8 +164,10 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
         scene, tf_parents, elements,
         detached_bodies(scene, tf_parents, options.anchor_models, problems))
     frames = Frames(list(frame_ids.values()), elements, parents, scene.poses[elements])
+    check_frames_of_sensors(frames, sensor_names, scene, options.root_frame, naming, problems)
     if options.optical_frames:
-        frames = frames.with_frames(optical_frames_of_cameras(frames, sensor_ids, scene, naming))
+        frames = frames.with_frames(
+            optical_frames_of_cameras(frames, sensor_names, scene, naming))
     _check_frame_ids(frames, scene, options.root_frame, problems)
     problems.raise_errors()
     for joint in tf_parents.loop_joints:
@@ -168,7 +180,7 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     ) if options.use_joint_states or options.has_joint_links else None
     if motion is not None and options.has_joint_links:
         frames = frames.with_frames(frames_at_joints(
-            frames, scene, motion, tf_parents, options.frame_prefix, options.root_frame))
+            frames, scene, motion, tf_parents, naming, options.root_frame))
     pose_frame = options.pose_frame or options.root_frame
     ids = [options.root_frame, *frames.ids]
     if pose_frame not in ids:
@@ -273,21 +285,21 @@ def _check_frame_ids(
         problems.error(DuplicateNameError(msg, scene.place(others[0])))
 
 
-def _frame_ids(
+def _names(
     naming: FrameNaming, scene: Scene, elements: Indices, problems: Problems,
 ) -> list[str]:
-    """Make frame ids; scoped ones for a model file in which a frame has the name of the model."""
-    frame_ids = naming.frame_ids_from_scene(scene, elements)
-    if naming.names is not FrameNames.AUTO or not frame_ids:
-        return frame_ids
+    """Make names; scoped ones for a model file in which a frame has the name of the model."""
+    names = naming.names_from_scene(scene, elements)
+    if naming.names is not FrameNames.AUTO or not names:
+        return names
     model = scene.top_level_element(int(elements[0]))
-    name = naming.frame_id_from_name(scene.names[model])
-    if frame_ids.count(name) < 2 or scene.world_names:
-        return frame_ids
+    name = scene.names[model]
+    if names.count(name) < 2 or scene.world_names:
+        return names
     msg = (f'a frame in the model has the name of the model, "{name}", so frame ids begin with '
            'it, as with frame_names "scoped"')
     problems.warning(msg, scene.place(model))
-    return naming._replace(names=FrameNames.SCOPED).frame_ids_from_scene(scene, elements)
+    return naming._replace(names=FrameNames.SCOPED).names_from_scene(scene, elements)
 
 
 def _cure_of_clash(scene: Scene, element: int) -> str:

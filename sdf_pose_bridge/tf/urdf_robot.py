@@ -119,6 +119,7 @@ class _RobotMaker:
         self._scene = scene
         self._model = model
         self._problems = Problems(scene.files)
+        self._naming = options.naming
         self._tree = tf_tree_from_scene(scene, options)
         elements = self._tree.elements
         self._elements: list[int] = elements.tolist()
@@ -215,7 +216,8 @@ class _RobotMaker:
         origin = transform if is_at_joint else pose_product(transform, pose_inverse(in_joint))
         for number, (step, joint_type, axis) in enumerate(steps, 1):
             is_last = is_at_joint and number == len(steps)
-            child = name if is_last else unused_name(f'{step}{LINK_SUFFIX}', self._link_names)
+            child = name if is_last else unused_name(
+                self._naming.frame_id_from_name(f'{step}{LINK_SUFFIX}'), self._link_names)
             self._add(child, link if is_last else -1, UrdfJoint(
                 step, joint_type, parent, origin, axis,
                 self._mimic(step, axis.mimic, joint.element)))

@@ -9,6 +9,7 @@ from sdf_texts import joint, model_file, posed, world_file
 from tf_checks import only_tree_error, parents_of, pose_of, tree_of
 
 from sdf_pose_bridge import load_text
+from sdf_pose_bridge.tf.frame_ids import FrameNaming
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 OPTICAL = matrix_from_rpy(0, 0, 0, -np.pi / 2, 0, -np.pi / 2)
@@ -100,6 +101,41 @@ def test_an_optical_frame_would_take_the_id_of_a_link():
     assert only_tree_error(text).code == 'DUPLICATE_NAME'
 
 
+# Sensors with the frame id of another element
+
+def place_warnings(children, pose='1 0 0 0 0 0', sensor='gpu_lidar', inside=''):
+    tree = tree_of(model_file(
+        f'<link name="l"><sensor name="s" type="{sensor}"><pose>{pose}</pose>{children}{inside}'
+        '</sensor></link>' + posed('frame', 'f', '1 0 0 0 0 0')
+        + posed('frame', 'eye', '1 0 0 -1.57 0 -1.57')))
+    return [each.message for each in tree.warnings]
+
+
+@pytest.mark.parametrize(('frame_id', 'away'), [
+    ('l', '1 m and 0 degrees'), ('m', '1 m and 0 degrees'), ('world', '1 m and 0 degrees'),
+    ('eye', '0 m and 119.95 degrees')])
+def test_data_of_a_sensor_elsewhere(frame_id, away):
+    message, = place_warnings(f'<gz_frame_id>{frame_id}</gz_frame_id>')
+    assert message.startswith(
+        f'the frame id "{frame_id}" of sensor "m::l::s" is that of a frame {away} away')
+
+
+def test_images_of_a_camera_elsewhere():
+    message, = place_warnings(
+        '', sensor='camera', inside='<camera><optical_frame_id>f</optical_frame_id></camera>')
+    assert 'optical frame id "f" of sensor "m::l::s" is that of a frame 0 m and 120 ' in message
+
+
+@pytest.mark.parametrize(('sensor', 'frame_id', 'optical_frame_id'), [
+    ('gpu_lidar', 'f', ''), ('gpu_lidar', 'laser', ''), ('gpu_lidar', '', ''),
+    ('camera', 'f', 'eye'), ('camera', 'eye', 'lens'), ('camera', 'eye', '')])
+def test_data_of_a_sensor_in_the_place_of_its_frame(sensor, frame_id, optical_frame_id):
+    assert not place_warnings(
+        f'<gz_frame_id>{frame_id}</gz_frame_id>' if frame_id else '', sensor=sensor,
+        inside=f'<camera><optical_frame_id>{optical_frame_id}</optical_frame_id></camera>'
+        if optical_frame_id else '')
+
+
 # Joints
 
 ENDS = '<parent>a</parent><child>b</child>'
@@ -132,6 +168,20 @@ def test_frames_at_joints(content, joint_type, parents):
 
 def test_frames_at_joints_have_the_prefix():
     assert parents_of_links(AWAY, 'revolute', frame_prefix='r/') == {'r/j_frame': 'r/a'}
+
+
+@pytest.mark.parametrize(('text', 'ids'), [
+    ('<robot name="m"><link name="world"/></robot>', ['world']),
+    (model_file(
+        f'<link name="a">{camera()}</link><link name="b"/>' + joint(AWAY, 'j', 'screw')),
+     ['m', 'a', 'a/cam', 'b', 'a/cam_optical', 'j_slide_frame'])])
+def test_all_frame_ids_are_made_in_one_place(monkeypatch, text, ids):
+    make = FrameNaming.frame_id_from_name
+    monkeypatch.setattr(FrameNaming, 'frame_id_from_name', lambda naming, name: (
+        make(naming, name) + ('_sim' if naming.prefix else '')))
+    options = TfOptions(frame_prefix='r/', has_joint_links=True)
+    tree = tf_tree_from_scene(load_text(text), options)
+    assert list(tree.frame_ids) == [f'r/{each}_sim' for each in ids]
 
 
 def test_there_are_none_unless_they_are_asked_for():
