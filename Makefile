@@ -130,7 +130,9 @@ audit: setup
 
 # Warnings, such as those of links that lead nowhere, are errors.
 docs: setup
-	@$(in_shell) python -m sphinx --fail-on-warning --keep-going --quiet docs docs/_build/html
+	@. underlay/setup.bash \
+	  && python -m sphinx --fail-on-warning --keep-going --quiet docs docs/_build/html \
+	  && echo 'The pages begin with $(CURDIR)/docs/_build/html/index.html'
 
 # Not rviz.png, which is a window of RViz on the command above it in README.md.
 pictures: setup

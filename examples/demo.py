@@ -99,8 +99,7 @@ def demonstrate(file: Path) -> None:
     with port:
         try:
             command = [str(bridge_executable()), '--ros-args', '-p', f'sdf_file:={file}']
-            print(f'ROS_DOMAIN_ID={domain} ros2 run {PACKAGE} bridge {" ".join(command[1:])}',
-                  flush=True)
+            print(f'Starting {" ".join(command)} in ROS domain {domain}', flush=True)
             bridge = subprocess.Popen(command, env=environment)
             processes.append(bridge)
             listener = subprocess.Popen(

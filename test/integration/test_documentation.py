@@ -92,6 +92,8 @@ def test_the_lists_name_nothing_that_is_gone():
 def copied_files(tmp_path, monkeypatch):
     for name in ('examples', 'docs/pictures'):
         shutil.copytree(ROOT / name, tmp_path / name)
+    # As the page about calibration says.
+    shutil.copy(tmp_path / 'examples/work_cell.sdf', tmp_path / 'my_cell.sdf')
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
