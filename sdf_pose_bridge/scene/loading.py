@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Set
+from collections.abc import Iterable, Iterator, Mapping
 import contextlib
 import gc
 import os
@@ -65,28 +65,28 @@ def load(
     """
     on_missing_include = MissingInclude(on_missing_include)
     gazebo_errors: list[SdfError] = []
-    gazebo_faults: Set[int] | None = frozenset()
+    left_out: set[int] = set()
     while True:
         sources = Sources(limits, texts)
         problems = sources.problems
-        for error in gazebo_errors:
-            problems.warning(
-                f'{error.message}; so {"this part" if gazebo_faults else "all"} of '
-                '<gazebo> elements is left out', error.place, error.code, is_for_gazebo=True)
         try:
-            document = document_from_file(
-                os.fspath(path), sources, gazebo_faults=gazebo_faults)
+            document = document_from_file(os.fspath(path), sources, left_out=left_out)
+            for error in gazebo_errors:
+                problems.warning(
+                    f'{error.message}; so {"this part" if document.gazebo_children else "all"} of '
+                    '<gazebo> elements is left out', error.place, error.code, is_for_gazebo=True)
             try:
                 return _scene(document, sources, resource_paths, on_missing_include, shapes=shapes)
             except LoadError as error:
-                if gazebo_faults is None or not document.has_gazebo_elements:
+                if not document.gazebo_children:
                     raise
                 # ROS does not read the content of <gazebo> elements, so an error there must not
                 # keep a robot from being read. The invalid elements are left out, and if errors
                 # remain, all of them.
+                found = set() if left_out else document.gazebo_children_at(
+                    each.place for each in error.errors)
+                left_out |= found or document.gazebo_children.keys()
                 gazebo_errors += error.errors
-                gazebo_faults = None if gazebo_faults else {
-                    each.line for each in error.errors if each.file == document.path} or None
         except LimitError as error:
             # It ends a load at once, after the errors found so far.
             raise LoadError([*problems.errors, error], problems.warnings) from None

@@ -4,10 +4,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Set
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 import re
 import shlex
+from types import MappingProxyType
 from typing import NamedTuple
 
 from lxml import etree
@@ -17,7 +18,7 @@ from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.versions import convert, Version, version_from_text
 from sdf_pose_bridge.sdformat.xml_file import xml_from_file
-from sdf_pose_bridge.sdformat.xml_tree import first_child, text_of, written_tag, XmlElement
+from sdf_pose_bridge.sdformat.xml_tree import text_of, written_tag, XmlElement
 
 _EXPANDED_PARTS = etree.XPath(
     'descendant-or-self::*[not(ancestor-or-self::*[name()="plugin" or name()="xacro:arg" or '
@@ -34,22 +35,32 @@ class Document(NamedTuple):
     path: str
     root: XmlElement
     """The ``sdf`` element."""
-    has_gazebo_elements: bool = False
-    """Whether it is URDF with ``<gazebo>`` elements."""
     urdf_root: str | None = None
     """The name of the root link, for URDF that is read as ROS reads it; else None."""
+    gazebo_children: Mapping[int, Place] = MappingProxyType({})
+    """For URDF the places of the children of ``<gazebo>`` elements, by their indices in the file,
+    without those that are left out."""
+
+    def gazebo_children_at(self, places: Iterable[Place]) -> set[int]:
+        """Return the children of ``<gazebo>`` elements that contain some places."""
+        found = [
+            max((index for index, child in self.gazebo_children.items()
+                 if f'{place.element}/'.startswith(f'{child.element}/')
+                 and place.file == child.file and child.line <= place.line), default=None)
+            for place in places]
+        return {index for index in found if index is not None}
 
 
 def document_from_file(
     path: str, sources: Sources, *, is_included: bool = False,
-    gazebo_faults: Set[int] | None = frozenset(),
+    left_out: Iterable[int] = (),
 ) -> Document:
     """
     Read a file, or the text of its name in ``sources.texts``.
 
     :param is_included: whether to convert URDF as libsdformat does.
-    :param gazebo_faults: lines of errors in a URDF file. Children of ``<gazebo>`` elements with
-        these lines are left out; with None, all of them.
+    :param left_out: the children of ``<gazebo>`` elements of a URDF file that are left out, by
+        their indices in the file.
     :return: the file, in the newest version.
     :raises SdfError: if it cannot be read or converted; a LimitError if it is too large.
     """
@@ -60,15 +71,14 @@ def document_from_file(
     sources.problems.extend(file.warnings)
     if b'$' in file.text or b'xacro' in file.text:
         _check_is_expanded(root, path, sources)
-    has_gazebo_elements, urdf_root = False, None
+    gazebo_children: dict[int, XmlElement] = {}
+    urdf_root = None
     if root.tag == 'robot':
         # Most files are not URDF and do not need this import.
         from sdf_pose_bridge.sdformat.urdf.conversion import sdf_from_urdf
-        has_gazebo_elements = first_child(root, 'gazebo') is not None
-        for child in root.xpath('gazebo/*'):
-            if gazebo_faults is None or not gazebo_faults.isdisjoint(
-                    map(sources.line, child.iter(etree.Element))):
-                child.getparent().remove(child)
+        gazebo_children = dict(enumerate(root.xpath('gazebo/*')))
+        for child in map(gazebo_children.pop, left_out):
+            child.getparent().remove(child)
         root, root_link = sdf_from_urdf(root, sources, is_included=is_included)
         if not is_included:
             urdf_root = root_link
@@ -88,7 +98,8 @@ def document_from_file(
                'in the implicit root, which has no frames')
         sources.error(AttributeInvalidError, pose, msg)
         del pose.attrib['relative_to']
-    return Document(path, root, has_gazebo_elements, urdf_root)
+    return Document(path, root, urdf_root, {
+        index: sources.place(child) for index, child in gazebo_children.items()})
 
 
 def _declared_version(root: XmlElement, place: Place) -> Version:

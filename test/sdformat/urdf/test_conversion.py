@@ -305,10 +305,11 @@ def test_wrong_gazebo_elements_are_left_out_for_ros_with_a_warning():
     assert warning.message.endswith('so this part of <gazebo> elements is left out')
 
 
-def test_only_what_is_wrong_in_gazebo_elements_is_left_out():
+@pytest.mark.parametrize('end', ['\n', ''])
+def test_only_what_is_wrong_in_gazebo_elements_is_left_out(end):
     other = SENSOR.format('').replace('"s"', '"t"')
-    text = robot(TWO + FIXED + gazebo(SENSOR.format('') + '\n' + SENSOR.format('') + '\n' + other,
-                                      'b') + '\n' + gazebo(other, 'a'))
+    sensors = end.join([SENSOR.format(''), SENSOR.format(''), other])
+    text = robot(TWO + FIXED + gazebo(sensors, 'b') + end + gazebo(other, 'a'))
     scene = load_text(text)
     assert [name for name in scene.names if name.endswith(('::s', '::t'))] == [
         'r::a::t', 'r::b::s', 'r::b::t']
