@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 import sdf_pose_bridge
+from sdf_pose_bridge.sdformat.grammar import Kind
 
-TYPES = {'sensor': 'camera', 'light': 'point', 'particle_emitter': 'point'}
+TYPES = {'joint': 'fixed', 'sensor': 'camera', 'light': 'point', 'particle_emitter': 'point'}
 LINK = '<link name="l"/>'
 LINK_CHILDREN = ('visual', 'collision', 'sensor', 'light', 'particle_emitter', 'projector')
+KINDS_IN_MODELS = [kind for kind in Kind if 'model' in kind.parents]
 TWO_LINKS = '<link name="a"/><link name="b"/>'
 
 
@@ -46,6 +48,13 @@ def posed(tag, name, pose, relative_to=''):
     """Return an element with a pose."""
     reference = f' relative_to="{relative_to}"' if relative_to else ''
     return element(tag, name, f'<pose{reference}>{pose}</pose>')
+
+
+def part_of_model(kind, name, relative_to=''):
+    """Return an element of a kind that a model with the links ``a`` and ``b`` may contain."""
+    content = {'model': LINK, 'joint': '<parent>a</parent><child>b</child>'}.get(kind.label, '')
+    return posed(kind.label, name, '0 1 0 0 0 2', relative_to).replace(
+        '</pose>', '</pose>' + content)
 
 
 def write_files(folder, **texts):

@@ -9,7 +9,7 @@ from pathlib import Path
 import re
 import shlex
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from lxml import etree
 
@@ -71,7 +71,7 @@ def document_from_file(
     sources.problems.extend(file.warnings)
     if b'$' in file.text or b'xacro' in file.text:
         _check_is_expanded(root, path, sources)
-    gazebo_children: dict[int, XmlElement] = {}
+    gazebo_children: dict[int, Any] = {}
     urdf_root = None
     if root.tag == 'robot':
         # Most files are not URDF and do not need this import.

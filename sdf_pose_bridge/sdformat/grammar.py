@@ -21,6 +21,9 @@ separated by blanks:
 ``!`` after a tag or a name: the element or attribute is required. If a required child element is
 missing, libsdformat adds it with its default value, except in joints. ``+`` is the same for an
 element that may be repeated; its value may be blank, which a required value may not be otherwise.
+
+``^`` comes next: the attribute, or the text of the child element, names a frame around the
+element. Merges and conversions, which move the element, change it.
 """
 
 from __future__ import annotations
@@ -99,9 +102,9 @@ class Kind(enum.IntEnum):
         '@name! pose gravity,enable_wind,self_collide,kinematic,must_be_base_link:bool '
         'velocity_decay audio_sink audio_source battery'), True
     JOINT = 'model world', (
-        '@name! @type!:joint_type pose parent! child! gearbox_ratio:double gearbox_reference_body '
-        'thread_pitch,screw_thread_pitch:double axis axis2 physics'), True
-    FRAME = 'model world', '@name! @attached_to:frame pose', True
+        '@name! @type!:joint_type pose parent!^ child!^ gearbox_ratio:double '
+        'gearbox_reference_body thread_pitch,screw_thread_pitch:double axis axis2 physics'), True
+    FRAME = 'model world', '@name! @attached_to^:frame pose', True
     VISUAL = 'link', (
         '@name! pose cast_shadows:bool laser_retro,transparency:double visibility_flags:uint meta '
         'material geometry! plugin')
@@ -139,7 +142,7 @@ class Kind(enum.IntEnum):
 
 
 _ITEM = re.compile(
-    r'(?P<mark>@(?=\w)|/)?(?P<name>\w+|\*|(?<=/)|(?=[!+]?:))(?P<required>[!+]?)'
+    r'(?P<mark>@(?=\w)|/)?(?P<name>\w+|\*|(?<=/)|(?=[!+]?:))(?P<required>[!+]?)(?P<reference>\^?)'
     r'(?:=(?P<identifier>\w+(?:/\w+)?))?'
     r'(?P<value>:(?P<type>\w+)(?:\[(?P<minimum>[^,\]]*),(?P<maximum>[^,\]]*)\])?)?')
 _UNREAD = frozenset({'model_state', 'population', 'road', 'state'})
@@ -159,6 +162,8 @@ class Item(NamedTuple):
     """Empty for the value of the element itself."""
     required: str
     """``!``, ``+`` or empty."""
+    is_reference: bool
+    """Whether it names a frame around the element."""
     identifier: str
     value: str
     """The type and the range, as written; empty for a child element with a definition."""
@@ -182,7 +187,7 @@ def _item(text: str) -> Item:
     if match is None:
         msg = f'"{text}" is not an item of a definition'
         raise ValueError(msg)
-    mark, name, required, identifier, value, label, minimum, maximum = match.groups('')
+    mark, name, required, reference, identifier, value, label, minimum, maximum = match.groups('')
     if label and label not in _VALUE_TYPES:
         msg = f'"{label}" in the definition "{text}" is not a type of values'
         raise ValueError(msg)
@@ -190,7 +195,7 @@ def _item(text: str) -> Item:
         msg = f'"{identifier}" in the definition "{text}" is not the name of a definition'
         raise ValueError(msg)
     return Item(
-        mark, name, required, identifier, value, _VALUE_TYPES[label or 'string'],
+        mark, name, required, bool(reference), identifier, value, _VALUE_TYPES[label or 'string'],
         CHOICES.get(label), float(minimum or -math.inf), float(maximum or math.inf))
 
 
@@ -226,6 +231,8 @@ class Definition:
             if (item.required or item.value_type is not ValueType.STRING)
             and (item.name != 'name' or self.kind is None)]
         """Those that are required or have another type than string, without names of frames."""
+        self.has_name = 'name' in self.attributes and self.attributes['name'].required == '!'
+        """Whether its elements must have names."""
         self.has_required_attributes = any(item.required for item in self.checked_attributes)
         self._child_items = [
             item for item in items if item.name not in ('', '*') and not item.mark]
@@ -248,6 +255,22 @@ class Definition:
         return self.has_frames and (
             self.kind is not None or self.is_pose or self.identifier in _CHECKED_WITH_FRAMES
             or any(child.concerns_frames for child in self.children.values()))
+
+    @cached_property
+    def references(self) -> Sequence[tuple[str, str]]:
+        """
+        The references to frames around it, of itself and of elements in it that are no frames.
+
+        Each is the path of an element and an attribute of it; an empty one for its text.
+        """
+        found = [('.', item.name) for item in self.attributes.values() if item.is_reference]
+        for item in self._child_items:
+            child = self.children[item.name]
+            if item.is_reference:
+                found.append((item.name, ''))
+            elif child.has_frames and child.kind is None:
+                found += [(f'{item.name}/{path}', name) for path, name in child.references]
+        return found
 
     def _child(self, item: Item) -> Definition:
         identifier = next((
@@ -276,3 +299,13 @@ STANDALONE_ELEMENTS: Mapping[str, str] = {
     if item.mark == '/'} | {kind.label: kind.label for kind in Kind}
 """Elements with a file of their own in the specification: identifiers by the names of the files.
 This reads all definitions, so that a mistake in one is an error of the import."""
+
+REFERENCE_ATTRIBUTES = sorted({
+    item.name for content in _CONTENTS.values() for item in _items(content)
+    if item.mark and item.is_reference})
+"""The attributes that name frames around their elements."""
+
+PARTS_OF_MODEL: Mapping[object, Definition] = {
+    tag: child for tag, child in definition_of('model', has_frames=True).children.items()
+    if child.has_frames and child.value is None}
+"""The child elements of a model with content, without those that libsdformat does not load."""

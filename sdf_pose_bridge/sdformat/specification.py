@@ -187,6 +187,7 @@ _CONTENTS = {
         'enable_orientation:bool'),
     'include': '@merge:bool uri! pose plugin name static:bool placement_frame model_state',
     'inertia': 'ixx!,ixy!,ixz!,iyy!,iyz!,izz!:double',
+    'include/pose,audio_source/pose': ':pose @relative_to:frame @rotation_format @degrees:bool',
     'inertial/pose': ':pose @rotation_format @degrees:bool',
     'insertions': 'model+=model light+=light joint+=joint',
     'intrinsics': 'fx!,fy!,cx!,cy!,s!:double',
@@ -250,7 +251,7 @@ _CONTENTS = {
     'polyline': '/polyline_shape point+:vector2 height!:double',
     'population': '/ @name! box cylinder model_count!:int distribution! pose model!=model',
     'distribution': 'type! rows,cols:int step:vector3',
-    'pose': '/ :pose @relative_to:frame @rotation_format @degrees:bool',
+    'pose': '/ :pose @relative_to^:frame @rotation_format @degrees:bool',
     'position_sensing,velocity_sensing': 'horizontal vertical',
     'position_sensing/horizontal,position_sensing/vertical': 'noise',
     'pressure,vertical_position,vertical_velocity,x,y,z': 'noise',
@@ -306,7 +307,7 @@ _CONTENTS = {
     'vertical': 'samples!:uint resolution,min_angle!,max_angle!:double',
     'waypoint': 'time!:double pose!:pose',
     'wind': 'linear_velocity:vector3',
-    'xyz': '!:axis @expressed_in',
+    'xyz': '!:axis @expressed_in^',
 }
 """The content of each element, by its tag, ``parent/tag`` or a name that ``tag=name`` uses. A key
 with commas is for several elements."""

@@ -18,6 +18,7 @@ from lxml import etree
 
 from sdf_pose_bridge.errors import ConversionError, Place
 from sdf_pose_bridge.names import MODEL_FRAME, SEPARATOR, WORLD_FRAME
+from sdf_pose_bridge.sdformat.grammar import PARTS_OF_MODEL, REFERENCE_ATTRIBUTES
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.values import boolean_from_text
 from sdf_pose_bridge.sdformat.xml_tree import (
@@ -70,10 +71,8 @@ _DEPRECATED = (
 _MODELS = '(model | world/model)'
 """The models that are not in another model."""
 
-_SCOPED_TAGS = frozenset({'link', 'joint', 'frame', 'model', 'gripper'})
-_REFERENCE_ATTRIBUTES = ('relative_to', 'attached_to', 'expressed_in')
 _ELEMENTS_WITH_REFERENCES = etree.XPath(
-    f'descendant-or-self::*[{" or ".join(f"@{name}" for name in _REFERENCE_ATTRIBUTES)}]')
+    f'descendant-or-self::*[{" or ".join(f"@{name}" for name in REFERENCE_ATTRIBUTES)}]')
 
 
 def version_numbers(text: str) -> tuple[int, ...]:
@@ -211,7 +210,8 @@ def _nest_scoped_elements(
         if child.tag == 'model' and scope and not separator and not is_stopped:
             _nest_scoped_elements(child, sources, referrers, depth + 1)
             is_stopped = True
-        if child.tag not in _SCOPED_TAGS or not separator or not scope or not name:
+        part = PARTS_OF_MODEL.get(child.tag)
+        if part is None or not part.has_name or not separator or not scope or not name:
             continue
         if scope not in nested_models:
             if is_stopped:
@@ -257,12 +257,12 @@ def _remove_prefix_from_references(
         # References in it are to names in it.
         return
     for element in referrers(xml):
-        for attribute in _REFERENCE_ATTRIBUTES:
+        for attribute in REFERENCE_ATTRIBUTES:
             name = attribute_of(element, attribute)
             if name and element is not pose:
                 element.set(attribute, _without_prefix(name, prefix, element, sources))
-    if xml.tag == 'joint':
-        for end in child_elements(xml, 'parent', 'child'):
+    for path, attribute in PARTS_OF_MODEL[xml.tag].references:
+        for end in xml.iterfind(path) if not attribute else ():
             end.text = _without_prefix(value_of(end), prefix, end, sources)
 
 

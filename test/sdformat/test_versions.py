@@ -5,7 +5,17 @@
 import itertools
 
 import pytest
-from sdf_texts import codes_of, fixed_joint, LINK, model_file, names_of, TWO_LINKS
+from sdf_texts import (
+    codes_of,
+    fixed_joint,
+    KINDS_IN_MODELS,
+    LINK,
+    model_file,
+    names_of,
+    part_of_model,
+    posed,
+    TWO_LINKS,
+)
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.sdformat.documents import document_from_file
@@ -160,6 +170,14 @@ def world(content, version='1.7'):
 ])
 def test_reference_from_a_nested_model_to_outside_cannot_be_converted(content, code):
     assert codes_of(world(f'<link name="base"/>{content}')) == [code]
+
+
+@pytest.mark.parametrize('kind', KINDS_IN_MODELS, ids=lambda kind: kind.label)
+def test_every_kind_in_a_model_moves_into_the_nested_model(kind):
+    part = part_of_model(kind, 'n::x').replace('>a<', '>n::a<').replace('>b<', '>n::b<')
+    nested = '<link name="n::a"/>' + posed('link', 'n::b', '1 0 0 0 0 0') + part
+    scene = load_text(world(nested))
+    assert scene.pose('m::n::x', relative_to='m::n')[5] != 0.0
 
 
 def test_pose_of_a_nested_link_can_be_relative_to_a_name_in_the_new_model():

@@ -19,7 +19,13 @@ from lxml import etree
 from sdf_pose_bridge.errors import AttributeInvalidError, MergeIncludeError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import MODEL_FRAME, ROOT_FRAME, WORLD_FRAME
-from sdf_pose_bridge.sdformat.grammar import ValueType
+from sdf_pose_bridge.sdformat.grammar import (
+    Definition,
+    definition_of,
+    Kind,
+    PARTS_OF_MODEL,
+    ValueType,
+)
 from sdf_pose_bridge.sdformat.poses import text_from_pose
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import (
@@ -32,21 +38,8 @@ from sdf_pose_bridge.sdformat.xml_tree import (
     XmlElement,
 )
 
-_MOVED_TAGS = frozenset({'frame', 'gripper', 'include', 'joint', 'link', 'model', 'plugin'})
 _PROXY_START, _PROXY_END = '_merged__', '__model__'
-_NOT_IN_WORLDS = ('gripper', 'link')
-_POSES_OF_PARTS = 'self::*[self::link or self::joint]/*[not(self::inertial)]/pose'
-_WRITTEN = [MODEL_FRAME]
-_WRITTEN_OR_EMPTY = [MODEL_FRAME, '']
-_REFERENCES = {
-    'link': [('pose', 'relative_to', _WRITTEN_OR_EMPTY)],
-    'model': [('pose', 'relative_to', _WRITTEN_OR_EMPTY)],
-    'frame': [('pose', 'relative_to', _WRITTEN), ('.', 'attached_to', _WRITTEN_OR_EMPTY)],
-    'joint': [('pose', 'relative_to', _WRITTEN), ('axis/xyz', 'expressed_in', _WRITTEN),
-              ('axis2/xyz', 'expressed_in', _WRITTEN)],
-}
-"""The references to frames in a child of a model: path, attribute, and the values that mean the
-model frame."""
+_POSES_OF_PARTS = '*[not(self::inertial)]/pose'
 
 
 class ModelByItself(NamedTuple):
@@ -84,25 +77,23 @@ def merge(
     proxy = _proxy_frame(include, model, parent, sources, model_by_itself)
     if proxy is None:
         return
-    misfits = list(child_elements(model, *_NOT_IN_WORLDS)) if parent.tag == 'world' else []
+    moved = [
+        child for child in child_elements(model)
+        if child.tag in PARTS_OF_MODEL or ':' in written_tag(child)]
+    tags = PARTS_OF_MODEL.keys() - definition_of(str(parent.tag)).children.keys()
+    misfits = [child for child in moved if child.tag in tags]
     for child in misfits:
         msg = f'{described(child)} cannot be merged into a world, which has no links of its own'
         sources.error(MergeIncludeError, child, msg)
     if misfits:
         return
     include.addprevious(proxy)
-    for child in list(child_elements(model)):
-        tag = written_tag(child)
-        if tag in _MOVED_TAGS or ':' in tag:
-            # libsdformat does not adapt the poses of visuals and similar elements.
-            for pose in child.xpath(_POSES_OF_PARTS):
-                if attribute_of(pose, 'relative_to') == MODEL_FRAME:
-                    msg = ('relative_to="__model__" means the model that this is merged into, not '
-                           'the one that it was written in')
-                    sources.warning(pose, msg)
-            _replace_model_frame(child, attribute_of(proxy, 'name'))
-            sources.set_origin(child, file=sources.path(child), is_checked=True)
-            include.addprevious(child)
+    for child in moved:
+        if child.tag in PARTS_OF_MODEL:
+            _replace_model_frame(
+                child, PARTS_OF_MODEL[child.tag], attribute_of(proxy, 'name'), sources)
+        sources.set_origin(child, file=sources.path(child), is_checked=True)
+        include.addprevious(child)
     parent.remove(include)
 
 
@@ -148,15 +139,27 @@ def is_name_of_proxy(name: str) -> bool:
     return name.startswith(_PROXY_START) and name.endswith(_PROXY_END)
 
 
-def _replace_model_frame(xml: XmlElement, proxy: str) -> None:
+def _replace_model_frame(
+    xml: XmlElement, definition: Definition, proxy: str, sources: Sources,
+) -> None:
     """Let references to the model frame refer to the proxy frame."""
-    if xml.tag in ('link', 'model') and first_child(xml, 'pose') is None:
+    # libsdformat does not adapt the poses of visuals and similar elements.
+    for pose in xml.xpath(_POSES_OF_PARTS) if definition.kind not in (None, Kind.MODEL) else ():
+        if attribute_of(pose, 'relative_to') == MODEL_FRAME:
+            msg = ('relative_to="__model__" means the model that this is merged into, not the one '
+                   'that it was written in')
+            sources.warning(pose, msg)
+    # By default, the poses of frames and joints are not relative to the model.
+    is_in_model = definition.kind not in (None, Kind.FRAME, Kind.JOINT)
+    if is_in_model and first_child(xml, 'pose') is None:
         xml.insert(0, etree.Element('pose'))
-    for path, attribute, meaning_model_frame in _REFERENCES.get(str(xml.tag), ()):
+    for path, attribute in definition.references:
         for element in xml.iterfind(path):
-            if attribute_of(element, attribute) in meaning_model_frame:
-                element.set(attribute, proxy)
-    for end in child_elements(xml, 'parent', 'child') if xml.tag == 'joint' else ():
-        if value_of(end) == MODEL_FRAME:
-            end[:] = []
-            end.text = proxy
+            name = attribute_of(element, attribute) if attribute else value_of(element)
+            if name == MODEL_FRAME or (
+                    not name and (is_in_model or attribute == 'attached_to')):
+                if attribute:
+                    element.set(attribute, proxy)
+                else:
+                    element[:] = []
+                    element.text = proxy

@@ -27,7 +27,13 @@ from sdf_pose_bridge.errors import (
 )
 from sdf_pose_bridge.names import hint_from_names, scoped_name, SEPARATOR
 from sdf_pose_bridge.problems import Problems
-from sdf_pose_bridge.sdformat.grammar import Definition, definition_of, STANDALONE_ELEMENTS
+from sdf_pose_bridge.sdformat.grammar import (
+    Definition,
+    definition_of,
+    Kind,
+    PARTS_OF_MODEL,
+    STANDALONE_ELEMENTS,
+)
 from sdf_pose_bridge.sdformat.joints import DEFAULT_END
 from sdf_pose_bridge.sdformat.reader import is_valid_element
 from sdf_pose_bridge.sdformat.sources import PARAMS_TAG, Sources
@@ -42,13 +48,15 @@ from sdf_pose_bridge.sdformat.xml_tree import (
     XmlElement,
 )
 
-TOP_TAGS = ('model', 'actor', 'light')
+TOP_TAGS = [
+    kind.label for kind in Kind if 'sdf' in kind.parents and kind is not Kind.WORLD]
 """The tags of elements that can be included, in the order of preference."""
 _OWN_ATTRIBUTES = ('element_id', 'action')
 _ACTIONS = ('add', 'modify', 'remove', 'replace')
 _POSE_FORMAT_ATTRIBUTES = frozenset({'degrees', 'rotation_format'})
-_PARTS = ('pose', 'parent', 'child', 'axis', 'axis2')
-"""Children that are in the file of their parent element."""
+_PARTS = {
+    path.partition('/')[0] for part in PARTS_OF_MODEL.values() for path, _ in part.references}
+"""Children that are in the file of their parent element: those with references."""
 _MOST_IDS_COMPARED = 2000
 _MOST_ELEMENTS_SEARCHED = 10_000
 _LONGEST_ID_COMPARED = 200

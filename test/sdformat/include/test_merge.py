@@ -8,8 +8,10 @@ from sdf_texts import (
     assert_at,
     errors_of_file,
     fixed_joint,
+    KINDS_IN_MODELS,
     LINK,
     names_of,
+    part_of_model,
     posed,
     warning_codes,
     write_files,
@@ -285,6 +287,17 @@ MODEL_FRAME_REFERENCES = arm(
 def test_reference_to_the_model_frame_becomes_one_to_the_proxy_frame(scene_of, name, x):
     scene = scene_of(in_model(include('<pose>5 0 0 0 0 0</pose>')), arm=MODEL_FRAME_REFERENCES)
     assert_at(scene, f'm::{name}', (x, 0, 0))
+
+
+@pytest.mark.parametrize('relative_to', ['', '__model__', 'a'])
+@pytest.mark.parametrize('kind', KINDS_IN_MODELS, ids=lambda kind: kind.label)
+def test_every_kind_in_a_model_keeps_its_place(scene_of, kind, relative_to):
+    text = arm(
+        posed('link', 'a', '1 0 0 0 0 1') + posed('link', 'b', '0 0 1 1 0 0')
+        + part_of_model(kind, 'x', relative_to))
+    main = in_model(include('<pose>5 0 0 0 0 1</pose>'))
+    included = scene_of(main.replace('merge="true"', ''), arm=text)
+    assert_at(scene_of(main, arm=text), 'm::x', included.pose('m::arm::x'))
 
 
 def test_joint_holds_the_proxy_frame_in_place_of_the_model_frame(scene_of):
