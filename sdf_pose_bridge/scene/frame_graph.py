@@ -108,8 +108,8 @@ class _Builder:
         bodies[(elements.parents >= 0) & ~IS_FRAME_KIND[elements.kinds]] = NO_ELEMENT
         checks = JointChecks(elements, self._scopes, bodies, self._problems)
         joints_of_bodies = [
-            checked for ends in joints.values() if ends.joint not in self._unresolved
-            and (checked := checks.checked(ends)) is not None]
+            ends for joint, (parent, child) in joints.items() if joint not in self._unresolved
+            and (ends := checks.ends_of(joint, parent, child)) is not None]
         self._set_references(references)
         placements = self._placements()
         self._add_dependents(references, attachments, joints_of_bodies, placements)
@@ -120,23 +120,24 @@ class _Builder:
 
     # Attachment
 
-    def _joint_ends(self, joint: int) -> JointEnds:
+    def _joint_ends(self, joint: int) -> tuple[int, int]:
+        """Return the parent and the child of a joint; -1 for a name that names no frame."""
         details = self._elements.joints[joint]
         for axis in filter(None, details.axes if self._elements.missing_includes else ()):
-            for name in (axis.expressed_in.name, axis.leader.name):
-                self._frame(joint, name, NO_ELEMENT)
+            for reference in filter(None, (axis.expressed_in, axis.mimic and axis.mimic.leader)):
+                self._frame(joint, reference.name, NO_ELEMENT)
         parent, child = details.parent.name, details.child.name
-        return JointEnds(
-            joint, self._scopes.roots[joint] if parent == WORLD_FRAME
+        return (
+            self._scopes.roots[joint] if parent == WORLD_FRAME
             else self._frame(joint, parent, NO_ELEMENT), self._frame(joint, child, NO_ELEMENT))
 
     def _attachments(
-        self, joints: Mapping[int, JointEnds], canonical: Mapping[int, int],
+        self, joints: Mapping[int, tuple[int, int]], canonical: Mapping[int, int],
     ) -> Indices:
         elements = self._elements
         attachments = np.full(len(elements.names), NO_ELEMENT, dtype=np.int32)
-        for joint, ends in joints.items():
-            attachments[joint] = ends.child
+        for joint, (_, child) in joints.items():
+            attachments[joint] = child
         for model, details in elements.models.items():
             if not details.is_static:
                 attachments[model] = canonical[model]

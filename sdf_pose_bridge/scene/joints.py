@@ -26,7 +26,7 @@ from sdf_pose_bridge.names import MODEL_FRAME, SEPARATOR, WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.name_scopes import NameScopes
 from sdf_pose_bridge.sdformat.elements import Elements, NO_ELEMENT
-from sdf_pose_bridge.sdformat.joints import AXIS_TAGS, AxisDetails, DEFAULT_END, Reference
+from sdf_pose_bridge.sdformat.joints import AXIS_TAGS, DEFAULT_END, MimicDetails, Reference
 
 
 class JointEnds(NamedTuple):
@@ -35,9 +35,9 @@ class JointEnds(NamedTuple):
     joint: int
     parent: int
     child: int
-    axes: tuple[tuple[int, int], ...] = ()
-    """The frame in which the vector of each axis is expressed, and the joint that the axis mimics,
-    -1 for none; empty before the joint is checked."""
+    axes: tuple[tuple[int, int], ...]
+    """The frame in which the vector of each axis is expressed, and the joint that the axis mimics;
+    -1 for none."""
 
 
 class JointChecks:
@@ -55,14 +55,13 @@ class JointChecks:
         self._bodies: list[int] = bodies.tolist()
         self._problems = problems
 
-    def checked(self, ends: JointEnds) -> JointEnds | None:
+    def ends_of(self, joint: int, parent: int, child: int) -> JointEnds | None:
         """Return a joint with the references of its axes; None if it does not join two bodies."""
-        axes = tuple(
-            (ends.joint, NO_ELEMENT) if axis is None else
-            (self._expressed_in(ends.joint, axis.expressed_in),
-             self._leader(ends.joint, index, axis))
-            for index, axis in enumerate(self._elements.joints[ends.joint].axes))
-        return ends._replace(axes=axes) if self._are_valid(ends) else None
+        ends = JointEnds(joint, parent, child, tuple(
+            (joint, NO_ELEMENT) if axis is None else
+            (self._expressed_in(joint, axis.expressed_in), self._leader(joint, index, axis.mimic))
+            for index, axis in enumerate(self._elements.joints[joint].axes)))
+        return ends if self._are_valid(ends) else None
 
     def _expressed_in(self, joint: int, reference: Reference) -> int:
         found = joint if not reference.name else self._scopes.frame(
@@ -72,10 +71,10 @@ class JointChecks:
             return joint
         return found
 
-    def _leader(self, joint: int, index: int, axis: AxisDetails) -> int:
-        mimic, name, scope = axis.axis.mimic, axis.leader.name, self._scopes.scope_of[joint]
+    def _leader(self, joint: int, index: int, mimic: MimicDetails | None) -> int:
         if mimic is None:
             return NO_ELEMENT
+        name, scope = mimic.leader.name, self._scopes.scope_of[joint]
         leader = self._scopes.frame(scope, name) if name else None
         if leader is None or leader not in self._elements.joints:
             msg = f'mimic joint="{name}" names no joint'
@@ -86,7 +85,7 @@ class JointChecks:
             msg = f'mimic: joint "{name}" has no <{AXIS_TAGS[mimic.axis]}>'
         else:
             return leader
-        self._report(MimicError, msg, joint, axis.leader.line, AXIS_TAGS[index])
+        self._report(MimicError, msg, joint, mimic.leader.line, AXIS_TAGS[index])
         return NO_ELEMENT
 
     def _is_found_by_parts(self, leader: int, scope: int, name: str) -> bool:

@@ -31,7 +31,7 @@ from sdf_pose_bridge.scene.scene import Joint, Scene
 from sdf_pose_bridge.sdformat.elements import Elements, NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.inertials import Inertial, moments_from_matrix, moved_moments
-from sdf_pose_bridge.sdformat.joints import JointAxis
+from sdf_pose_bridge.sdformat.joints import JointAxis, Mimic
 
 _Details = TypeVar('_Details')
 
@@ -111,8 +111,8 @@ def _joint(
         axis, leader = written.axis, new_index_of[leader]
         axes.append(axis._replace(
             xyz=_axis_in_joint(axis.xyz, expressed_in, ends.joint, poses),
-            mimic=None if axis.mimic is None or leader == NO_ELEMENT else axis.mimic._replace(
-                joint=leader)))
+            mimic=None if written.mimic is None or leader == NO_ELEMENT else Mimic(
+                leader, *written.mimic[1:])))
     return Joint(
         new_index_of[ends.joint], details.type, new_index_of[ends.parent],
         new_index_of[ends.child], (axes[0], axes[1]), details.screw_pitch_m)

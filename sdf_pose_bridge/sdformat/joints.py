@@ -42,8 +42,7 @@ class Mimic(NamedTuple):
     """
 
     joint: int
-    """The joint of the leader, as an index into the scene; -1 as long as only its name is
-    known."""
+    """The joint of the leader, as an index into the scene."""
     axis: int
     """The axis of that joint: 0 for ``<axis>``, 1 for ``<axis2>``."""
     multiplier: float
@@ -76,15 +75,25 @@ class JointAxis(NamedTuple):
     """Force without a velocity."""
 
 
+class MimicDetails(NamedTuple):
+    """A :class:`Mimic` as written."""
+
+    leader: Reference
+    """The joint that the axis follows."""
+    axis: int
+    multiplier: float
+    offset: float
+    reference: float
+
+
 class AxisDetails(NamedTuple):
     """An axis of a joint, with its references as written."""
 
     axis: JointAxis
-    """Its vector is as written, and not zero."""
+    """Its vector is as written, and not zero; it has no mimic yet."""
     expressed_in: Reference
     """The frame that the vector is expressed in; empty for the frame of the joint."""
-    leader: Reference
-    """The joint that it mimics; empty for none."""
+    mimic: MimicDetails | None
 
 
 class JointDetails(NamedTuple):
@@ -168,10 +177,10 @@ def _axis(
             msg = (f'the limits {lower:g} to {upper:g} of joint "{attribute_of(joint, "name")}" '
                    'are radians; they look like degrees')
             sources.warning(limit, msg)
-    mimic, leader = _mimic(joint, axis, tag, sources)
     dynamics = _dynamics(axis) if reads_dynamics else ()
     return AxisDetails(
-        JointAxis((x, y, z), lower, upper, mimic, *dynamics), expressed_in, leader)
+        JointAxis((x, y, z), lower, upper, None, *dynamics), expressed_in,
+        _mimic(joint, axis, tag, sources))
 
 
 def _has_dof(joint_type: str, motion: Motion) -> bool:
@@ -194,10 +203,10 @@ def _dynamics(axis: XmlElement) -> Sequence[float]:
 
 def _mimic(
     joint: XmlElement, axis: XmlElement, tag: str, sources: Sources,
-) -> tuple[Mimic | None, Reference]:
+) -> MimicDetails | None:
     xml = first_child(axis, 'mimic')
     if xml is None:
-        return None, _NO_REFERENCE
+        return None
     leader = attribute_of(xml, 'joint')
     leader_tag = attribute_of(xml, 'axis') or AXIS_TAGS[0]
     msg = ''
@@ -207,11 +216,11 @@ def _mimic(
         msg = 'an axis cannot mimic itself'
     if msg:
         sources.error(MimicError, xml, msg)
-        return None, _NO_REFERENCE
-    return Mimic(
-        -1, AXIS_TAGS.index(leader_tag), number_of_child(xml, 'multiplier', 1.0),
-        number_of_child(xml, 'offset', 0.0), number_of_child(xml, 'reference', 0.0),
-    ), Reference(leader, sources.line(xml))
+        return None
+    return MimicDetails(
+        Reference(leader, sources.line(xml)), AXIS_TAGS.index(leader_tag),
+        number_of_child(xml, 'multiplier', 1.0), number_of_child(xml, 'offset', 0.0),
+        number_of_child(xml, 'reference', 0.0))
 
 
 def _screw_pitch_m(joint: XmlElement) -> float:
