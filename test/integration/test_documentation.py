@@ -42,7 +42,6 @@ NOT_RUN = {
     'gz ': 'needs Gazebo',
     'sdf_pose view examples/work_cell.sdf': 'opens a browser; test_view.py writes the page',
     'sdf_pose poses robot.sdf': "the file is the reader's",
-    'sdf_pose poses --format json -I models cell.sdf': "the file is the reader's",
     'FASTDDS_': 'needs a network that loses packets, or a profile of the user',
     'ROS_SUPER_CLIENT': 'the ros2 command line is not on PyPI',
     'export ROS_': "sets variables of the reader's shell",
