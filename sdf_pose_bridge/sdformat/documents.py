@@ -5,28 +5,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from pathlib import Path
-import re
-import shlex
 from types import MappingProxyType
 from typing import Any, NamedTuple
-
-from lxml import etree
 
 from sdf_pose_bridge.errors import AttributeInvalidError, FileReadError, ParsingError, Place
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.templates import check_is_expanded
 from sdf_pose_bridge.sdformat.versions import convert, Version, version_from_text
 from sdf_pose_bridge.sdformat.xml_file import xml_from_file
-from sdf_pose_bridge.sdformat.xml_tree import text_of, written_tag, XmlElement
-
-_EXPANDED_PARTS = etree.XPath(
-    'descendant-or-self::*[not(ancestor-or-self::*[name()="plugin" or name()="xacro:arg" or '
-    'name()="xacro:property"])]')
-"""The elements in which xacro leaves no expression that would change a frame."""
-_XACRO_EXPRESSION = re.compile(r'\$[({]')
-_LOCATIONS = ('uri', 'filename', '_map')
-"""Ends of tags whose text is a location on which no frame depends, except in an include."""
+from sdf_pose_bridge.sdformat.xml_tree import written_tag, XmlElement
 
 
 class Document(NamedTuple):
@@ -69,8 +57,7 @@ def document_from_file(
     root = file.root
     sources.add_tree(path, root, file.lines)
     sources.problems.extend(file.warnings)
-    if b'$' in file.text or b'xacro' in file.text:
-        _check_is_expanded(root, path, sources)
+    check_is_expanded(root, path, file.text, sources)
     gazebo_children: dict[int, Any] = {}
     urdf_root = None
     if root.tag == 'robot':
@@ -112,41 +99,3 @@ def _declared_version(root: XmlElement, place: Place) -> Version:
         msg = '<sdf> declares no version, such as version="1.10"'
         raise FileReadError(msg, place_of_root)
     return version_from_text(text, place)
-
-
-def _check_is_expanded(root: XmlElement, path: str, sources: Sources) -> None:
-    """
-    Refuse a file that xacro has not expanded yet.
-
-    Otherwise it would be read with another meaning: macros are not called, and the content of
-    ``<xacro:if>`` is left out. Only declarations, and expressions in plugins, names of topics and
-    locations of meshes, change no frame; such locations cause one warning.
-    """
-    name = Path(path).name
-    is_xacro, is_sdf = name.endswith('.xacro'), root.tag == 'sdf'
-    location = None
-    for xml in _EXPANDED_PARTS(root):
-        tag, text, parent = written_tag(xml), text_of(xml), xml.getparent()
-        found = [f'<{tag}>'] if tag.startswith('xacro:') else []
-        found += [
-            f'{attribute}="{value}" of <{tag}>' for attribute, value in xml.items()
-            if _XACRO_EXPRESSION.search(value)]
-        if _XACRO_EXPRESSION.search(text) and not tag.endswith('topic'):
-            part = f'"{text.strip()}" in <{tag}>'
-            if is_sdf and not is_xacro and tag.endswith(_LOCATIONS) and (
-                    parent is not None and parent.tag != 'include'):
-                location = location or (xml, part)
-            else:
-                found.append(part)
-        if found:
-            target = name.removesuffix('.xacro') if is_xacro else f'expanded_{name}'
-            if not Path(target).suffix:
-                target += '.sdf' if is_sdf else '.urdf'
-            command = f': xacro {shlex.quote(name)} -o {shlex.quote(target)}'
-            msg = (f'{found[0]} is for xacro; run xacro first, and read the file that it writes'
-                   f'{command if "." in name else ""}')
-            raise ParsingError(msg, Place(path, sources.line(xml)))
-    if location is not None:
-        msg = (f'{location[1]} is for xacro or launch files and is not expanded, so the file '
-               'there is not found; no frame depends on it')
-        sources.warning(location[0], msg)

@@ -26,6 +26,7 @@ from sdf_pose_bridge.errors import FileReadError, PassingReadError, Place, SdfWa
 from sdf_pose_bridge.names import shortened_message
 from sdf_pose_bridge.process_limits import raise_limits
 from sdf_pose_bridge.sdformat.limits import Usage
+from sdf_pose_bridge.sdformat.templates import hint_about_template
 from sdf_pose_bridge.sdformat.xml_text import repaired, text_from_bytes
 from sdf_pose_bridge.sdformat.xml_tree import is_foreign, WHITE_SPACE, XmlElement
 
@@ -188,8 +189,9 @@ def xml_from_bytes(content: bytes, path: str) -> XmlFile:
     if b'xmlns' in text:
         root = _parsed(_without_name_spaces(text), path)
     lines, warnings = _lines_and_warnings(root, text, path)
+    hint = hint_about_template(path, content) if faults else ''
     warnings += [
-        SdfWarning('WARNING', f'this is not well-formed XML: {fault}', Place(path, line))
+        SdfWarning('WARNING', f'this is not well-formed XML: {fault}{hint}', Place(path, line))
         for line, fault in faults]
     return XmlFile(root, tuple(warnings), lines, text, encoding)
 
@@ -208,7 +210,7 @@ def _parsed(text: bytes, path: str) -> XmlElement:
         fault = errors[0].message.strip()
         for pattern, replacement in _FAULTS.items():
             fault = re.sub(rf'\A{pattern}\Z', replacement, fault)
-        msg = f'this is not well-formed XML: {fault}'
+        msg = f'this is not well-formed XML: {fault}{hint_about_template(path, text)}'
         # libxml2 reports a missing end behind the last line break.
         last_line = text.count(b'\n') + (not text.endswith(b'\n'))
         raise FileReadError(msg, Place(path, min(errors[0].line, last_line)))

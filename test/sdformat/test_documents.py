@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Reading files into trees: the outermost element, its version, the top model's pose, xacro."""
+"""Reading files into trees: the outermost element, its version, the top model's pose."""
 
 import pytest
 from sdf_texts import (
@@ -14,9 +14,8 @@ from sdf_texts import (
     only_error,
     write_files,
 )
-from urdf_texts import joint, link, origin
 
-from sdf_pose_bridge import load, load_text, SdfError
+from sdf_pose_bridge import load, load_text
 
 
 @pytest.mark.parametrize(('text', 'code'), [
@@ -97,111 +96,3 @@ def test_separator_in_a_name_is_found(text):
 def test_file_with_a_name_in_utf_8_is_read(tmp_path):
     (tmp_path / 'größe 1.sdf').write_text(model_file(LINK))
     assert names_of(load(tmp_path / 'größe 1.sdf')) == ['m', 'm::l']
-
-
-XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
-TWO = link('a') + link('b')
-
-
-def sdf(content):
-    return f'<sdf version="1.10" {XACRO}><model name="m">\n{content}</model></sdf>'
-
-
-def urdf(content):
-    return f'<robot name="r" {XACRO}>\n{content}</robot>'
-
-
-@pytest.mark.parametrize(('text', 'found'), [
-    (sdf(LINK + '<xacro:include filename="arm.xacro"/>'), '<xacro:include>'),
-    (sdf('<xacro:if value="1">' + LINK + '</xacro:if>'), '<xacro:if>'),
-    (sdf('<link name="${side}_arm"/>'), 'name="${side}_arm" of <link>'),
-    (sdf('<link name="$(arg side)_arm"/>'), 'name="$(arg side)_arm" of <link>'),
-    (sdf('<link name="a"><pose>${x} 0 0 0 0 0</pose></link>'), '"${x} 0 0 0 0 0" in <pose>'),
-    (sdf('<link name="a"><pose relative_to="${f}"/></link>'), 'relative_to="${f}" of <pose>'),
-    (sdf('<include><uri>model://${arm}</uri></include>'), '"model://${arm}" in <uri>'),
-    (urdf(TWO + joint('j', 'a', 'b', 'fixed', origin('0 0 ${h}'))),
-     'xyz="0 0 ${h}" of <origin>'),
-    (urdf(link('a') + '<xacro:wheel name="left"/>'), '<xacro:wheel>'),
-    (urdf(link('a') + '<xacro:macro name="wheel"><link name="w"/></xacro:macro>'),
-     '<xacro:macro>'),
-    (urdf(link('${prefix}a')), 'name="${prefix}a" of <link>'),
-])
-def test_unexpanded_file_is_refused(text, found):
-    error = only_error(text)
-    assert (error.code, error.line) == ('PARSING_ERROR', 2)
-    assert error.message.startswith(f'{found} is for xacro')
-
-
-@pytest.mark.parametrize(('name', 'command'), [
-    ('my arm.sdf.xacro', "xacro 'my arm.sdf.xacro' -o 'my arm.sdf'"),
-    ('arm.urdf', 'xacro arm.urdf -o expanded_arm.urdf'),
-    ('arm.urdf.xacro', 'xacro arm.urdf.xacro -o arm.urdf'),
-    ('arm.xacro', 'xacro arm.xacro -o arm.urdf'),
-])
-def test_the_error_tells_the_command(tmp_path, name, command):
-    path = tmp_path / name
-    write = sdf if '.sdf' in name else urdf
-    path.write_text(write('<link name="${a}"/>'), encoding='utf-8')
-    (error,) = errors_of_file(path)
-    assert error.message.endswith(f': {command}')
-
-
-def test_for_a_text_there_is_no_command():
-    with pytest.raises(SdfError) as caught:
-        load_text(sdf('<link name="${a}"/>'), 'robot_description')
-    assert caught.value.message.endswith('and read the file that it writes')
-
-
-def test_an_included_file_is_refused_too(tmp_path):
-    (tmp_path / 'arm.sdf').write_text(sdf('<link name="${a}"/>'), encoding='utf-8')
-    path = tmp_path / 'cell.sdf'
-    path.write_text('<sdf version="1.10"><world name="w"><include><uri>arm.sdf</uri></include>'
-                    '</world></sdf>', encoding='utf-8')
-    (error,) = errors_of_file(path)
-    assert (error.file, error.line) == (str(tmp_path / 'arm.sdf'), 2)
-
-
-def test_declarations_plugins_and_topics_may_stay():
-    sensor = '<sensor name="s" type="imu"><topic>$(arg namespace)/imu</topic></sensor>'
-    scene = load_text(sdf(
-        '<xacro:arg name="namespace" default=""/><xacro:property name="p" value="${1 + 1}"/>'
-        f'<link name="a">{sensor}</link>'
-        '<plugin name="${p}" filename="$(arg x)"><pose>${p}</pose><xacro:if/></plugin>'))
-    assert 'm::a::s' in scene.names
-    assert scene.warnings == ()
-
-
-MESH = ('<link name="l"><visual name="v"><geometry><mesh><uri>$(find arm)/arm.dae</uri></mesh>'
-        '</geometry></visual></link>')
-
-
-def test_location_of_a_mesh_may_stay_with_one_warning():
-    scene = load_text(sdf(MESH + '<link name="k">' + MESH[len('<link name="l">'):]))
-    assert 'm::k::v' in scene.names
-    (warning,) = scene.warnings
-    assert warning.message.startswith('"$(find arm)/arm.dae" in <uri> is for xacro')
-    assert warning.place.line == 2
-
-
-@pytest.mark.parametrize(('content', 'found'), [
-    ('<link name="${a}"/>', 'name="${a}" of <link>'),
-    ('<include><uri>$(find arm)/arm.sdf</uri></include>', '"$(find arm)/arm.sdf" in <uri>'),
-])
-def test_location_of_a_mesh_hides_nothing_else(content, found):
-    error = only_error(sdf(MESH + content))
-    assert error.message.startswith(f'{found} is for xacro')
-
-
-def test_location_of_a_mesh_in_a_file_for_xacro_is_refused(tmp_path):
-    (tmp_path / 'm.sdf.xacro').write_text(sdf(MESH), encoding='utf-8')
-    (error,) = errors_of_file(tmp_path / 'm.sdf.xacro')
-    assert error.code == 'PARSING_ERROR'
-
-
-def test_a_dollar_alone_is_no_expression():
-    assert 'm::$a' in load_text(sdf('<link name="$a"/>')).names
-
-
-def test_other_encodings_are_checked():
-    text = sdf('<link name="${a}"/>').encode('utf-16')
-    assert only_error(text).message.startswith('name="${a}" of <link>')

@@ -1,0 +1,137 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Recognize files that another program has to expand first, such as xacro or Jinja."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+import re
+import shlex
+from typing import NamedTuple
+
+from lxml import etree
+
+from sdf_pose_bridge.errors import ParsingError, Place
+from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.xml_tree import text_of, written_tag, XmlElement
+
+_EXPANDED_PARTS = etree.XPath(
+    'descendant-or-self::*[not(ancestor-or-self::*[name()="plugin" or name()="xacro:arg" or '
+    'name()="xacro:property"])]')
+"""The elements in which xacro leaves no expression that would change a frame."""
+_XACRO_EXPRESSION = re.compile(r'\$[({]')
+_LOCATIONS = ('uri', 'filename', '_map')
+"""Ends of tags whose text is a location on which no frame depends, except in an include."""
+
+
+class _Language(NamedTuple):
+    """A language of templates."""
+
+    name: str
+    suffixes: tuple[str, ...]
+    """Ends of the names of its files."""
+    marks: tuple[str, ...]
+    """Beginnings of its expressions and statements."""
+
+
+_LANGUAGES = (
+    _Language('Jinja', ('.jinja', '.jinja2', '.j2'), ('{{', '{%')),
+    _Language('ERB', ('.erb',), ('<%',)),
+    _Language('EmPy', ('.em', '.empy'), ('@(', '@{', '@[')),
+)
+
+
+def hint_about_template(path: str, text: bytes) -> str:
+    """
+    Return the end of a message about a file that is not XML.
+
+    :return: the language of templates that the file is written in, and the file to read instead;
+        an empty string if there is none.
+    """
+    for language in _LANGUAGES:
+        if path.endswith(language.suffixes) or any(
+                mark.encode() in text for mark in language.marks):
+            return f'; the file {_cure(language, path)}'
+    return ''
+
+
+def check_is_expanded(root: XmlElement, path: str, text: bytes, sources: Sources) -> None:
+    """
+    Refuse a file that xacro has not expanded yet, and warn about other templates.
+
+    :param root: the content of the file.
+    :param text: its text in UTF-8.
+    :raises ParsingError: if it is for xacro.
+    """
+    # Python finds one byte much faster than two.
+    if b'$' in text or b'xacro' in text:
+        _refuse_xacro(root, path, sources)
+    if b'{' in text or b'@' in text:
+        _warn_about_template(root, path, sources)
+
+
+def _warn_about_template(root: XmlElement, path: str, sources: Sources) -> None:
+    """Warn about the first expression of a template; libsdformat takes it for a name."""
+    for xml in _EXPANDED_PARTS(root):
+        for value, found in _values(xml):
+            for language in _LANGUAGES:
+                if any(mark in value for mark in language.marks):
+                    sources.warning(xml, f'{found} {_cure(language, path)}')
+                    return
+
+
+def _cure(language: _Language, path: str) -> str:
+    """Return the end of a sentence about a template."""
+    made = next((path.removesuffix(each) for each in language.suffixes if path.endswith(each)), '')
+    file = (f'"{Path(made).name}" beside it' if made and Path(made).is_file()
+            else 'the file that it writes')
+    return f'is for {language.name}; run {language.name} first, and read {file}'
+
+
+def _values(xml: XmlElement) -> Iterator[tuple[str, str]]:
+    """Return the values of the attributes and the text of an element, and where they are."""
+    tag = written_tag(xml)
+    for attribute, value in xml.items():
+        yield value, f'{attribute}="{shortened(value)}" of <{tag}>'
+    text = text_of(xml)
+    yield text, f'"{shortened(text.strip())}" in <{tag}>'
+
+
+def _refuse_xacro(root: XmlElement, path: str, sources: Sources) -> None:
+    """
+    Refuse a file that xacro has not expanded yet.
+
+    Otherwise it would be read with another meaning: macros are not called, and the content of
+    ``<xacro:if>`` is left out. Only declarations, and expressions in plugins, names of topics and
+    locations of meshes, change no frame; such locations cause one warning.
+    """
+    name = Path(path).name
+    is_xacro, is_sdf = name.endswith('.xacro'), root.tag == 'sdf'
+    location = None
+    for xml in _EXPANDED_PARTS(root):
+        tag, text, parent = written_tag(xml), text_of(xml), xml.getparent()
+        found = [f'<{tag}>'] if tag.startswith('xacro:') else []
+        found += [
+            f'{attribute}="{value}" of <{tag}>' for attribute, value in xml.items()
+            if _XACRO_EXPRESSION.search(value)]
+        if _XACRO_EXPRESSION.search(text) and not tag.endswith('topic'):
+            part = f'"{text.strip()}" in <{tag}>'
+            if is_sdf and not is_xacro and tag.endswith(_LOCATIONS) and (
+                    parent is not None and parent.tag != 'include'):
+                location = location or (xml, part)
+            else:
+                found.append(part)
+        if found:
+            target = name.removesuffix('.xacro') if is_xacro else f'expanded_{name}'
+            if not Path(target).suffix:
+                target += '.sdf' if is_sdf else '.urdf'
+            command = f': xacro {shlex.quote(name)} -o {shlex.quote(target)}'
+            msg = (f'{found[0]} is for xacro; run xacro first, and read the file that it writes'
+                   f'{command if "." in name else ""}')
+            raise ParsingError(msg, Place(path, sources.line(xml)))
+    if location is not None:
+        msg = (f'{location[1]} is for xacro or launch files and is not expanded, so the file '
+               'there is not found; no frame depends on it')
+        sources.warning(location[0], msg)
