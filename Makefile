@@ -43,7 +43,7 @@ help:
 	@echo 'make fuzz           hostile files by atheris; MINUTES=60 for longer, findings in fuzz_findings'
 	@echo 'make growth         how time and memory of hostile files grow; ARGS="--around includes" in these'
 	@echo 'make soak           the node under load for MINUTES=30: nothing lost, nothing growing'
-	@echo 'make licenses       licences of everything that is installed for this, as in docs/licenses.md'
+	@echo 'make licenses       the licence of each package that is installed for this'
 	@echo 'make audit          known vulnerabilities of it, by pip-audit; needs the network'
 	@echo 'make docs           the documentation, into docs/_build/html'
 	@echo 'make pictures       the pictures in the documentation but those of RViz; needs Chromium and Graphviz'
