@@ -145,7 +145,8 @@ def line_about_unreported_joints(joints: MissingJoints) -> str:
     return (
         f'{count_in_words(joints.number, "joint")} {have} not been reported yet, for example '
         f'{names_in_line([joints.first])}; frames that a joint moves have no transforms until a '
-        f'message on {" or ".join(joints.topics) or "a topic"} names the joint')
+        f'message on {" or ".join(joints.topics) or "a topic"} names the joint, or with '
+        'unreported_joints:=zero')
 
 
 def line_about_joints_at_rest(scene: Scene, model: str, frame_names: FrameNames) -> str:

@@ -79,7 +79,9 @@ class Selection(NamedTuple):
 
 class JointPositions:
     """
-    The positions of the degrees of freedom of a scene; all are zero at first.
+    The positions of the degrees of freedom of a scene; at first zero, or the only position.
+
+    The positions of joints whose lower limit is the upper one are known from the beginning.
 
     :param model: the scoped name of the only model whose joints have names; empty for all.
     :param unreported: whether joints without a reported position count as being at zero.
@@ -91,7 +93,10 @@ class JointPositions:
     ) -> None:
         self.names = tuple(each.name for each in dofs)
         """The name of each degree of freedom."""
-        self.values = np.zeros(len(dofs))
+        self._is_fixed = np.array([
+            each.axis.lower == each.axis.upper and abs(each.axis.lower) <= LARGEST_POSITION
+            for each in dofs], np.bool_)
+        self.values = np.where(self._is_fixed, [each.axis.lower for each in dofs], 0.0)
         """The position of each degree of freedom, in radians or metres. A change is another array,
         so that another thread has all values of one time."""
         self._stamps_of_values_ns = np.full(len(dofs), _UNREPORTED)
@@ -124,7 +129,7 @@ class JointPositions:
     def is_known(self) -> NDArray[np.bool_]:
         """Whether the position of each is known."""
         if self._unreported is UnreportedJoints.NONE:
-            return self.is_reported
+            return self.is_reported | self._is_fixed
         return np.ones(len(self.names), np.bool_)
 
     @property
@@ -221,7 +226,7 @@ class JointPositions:
 
     def take_over(self, before: JointPositions) -> None:
         """Continue with the positions that joints of the same names had before."""
-        rows = {name: row for row, name in enumerate(before.names)}
+        rows = {name: row for row, name in enumerate(before.names) if before.is_reported[row]}
         here = [dof for dof, name in enumerate(self.names) if name in rows]
         there = [rows[self.names[dof]] for dof in here]
         self.values = self.values.copy()

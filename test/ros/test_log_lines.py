@@ -112,7 +112,8 @@ def test_frames_that_tf_cannot_forget_are_named():
 def test_joints_that_nobody_reports_are_counted(count, words):
     line = line_about_unreported_joints(MissingJoints(count, 'j0', ('/a', '/b')))
     assert line.startswith(words)
-    assert line.endswith(' until a message on /a or /b names the joint')
+    assert line.endswith(
+        ' until a message on /a or /b names the joint, or with unreported_joints:=zero')
 
 
 def test_joints_that_stand_still_are_counted_where_they_are_published():

@@ -209,6 +209,25 @@ def test_joints_of_the_same_name_continue_in_another_scene():
     assert after.is_reported.tolist() == [name == 'j' for name in after.names]
 
 
+def with_limits(name, lower, upper):
+    """Return a joint of ``a`` with limits."""
+    limit = f'<lower>{lower}</lower><upper>{upper}</upper>'
+    return joint(f'{ENDS}<axis><limit>{limit}</limit></axis>', name, 'revolute').replace(
+        '>b<', f'>{name}b<') + f'<link name="{name}b"/>'
+
+
+def test_a_joint_with_one_position_has_it_without_a_message():
+    text = model_file(
+        LINKS + with_limits('free', -1, 1) + with_limits('zero', 0, 0) + with_limits('bent', 0.5, 0.5)
+        + with_limits('far', 1e10, 1e10))
+    positions = positions_of(text)
+    assert values_of(positions) == {'free': 0.0, 'zero': 0.0, 'bent': 0.5, 'far': 0.0}
+    assert positions.unreported() == ['free', 'far']
+    after = positions_of(text.replace('0.5', '0.75'))
+    after.take_over(positions)
+    assert values_of(after)['bent'] == 0.75
+
+
 # Stamps
 
 def test_an_older_position_does_not_count():
