@@ -7,6 +7,7 @@ from __future__ import annotations
 import argparse
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
+from functools import cache
 import re
 import sys
 
@@ -21,7 +22,7 @@ from sdf_pose_bridge.errors import Place, SdfError, SdfWarning
 from sdf_pose_bridge.names import printable, shortened
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.include.uris import resource_finder, ResourceFinder
+from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
 _END_OF_FOLDER = re.compile('(?<=[^/:])/')
@@ -93,23 +94,21 @@ def _doubts_about_shapes(scene: Scene, resource_paths: Sequence[str]) -> tuple[S
             key = shape.mesh_uri, place.file
             places[key] = min(place, places.get(key, place), key=lambda each: each.line)
     missing: defaultdict[tuple[str, str], list[str]] = defaultdict(list)
+    path_from_uri = cache(finder.path_from_uri)
     for uri, file in sorted(places, key=lambda key: places[key].line):
-        if finder.file_from_uri(uri, file) is None:
-            missing[_missing_part(uri, file, finder), file].append(uri)
+        # Most missing files are in missing folders, of which there are fewer. Each model of Fuel
+        # is fetched by itself.
+        folders = [] if uri.lower().startswith('http') else [
+            uri[:end.start()] for end in _END_OF_FOLDER.finditer(uri)]
+        part = next((each for each in folders if path_from_uri(each, file) is None), uri)
+        if part != uri or finder.file_from_uri(uri, file) is None:
+            missing[part, file].append(uri)
     for (folder, file), uris in missing.items():
         others = f', like {len(uris) - 1} more of "{shortened(folder)}"' if uris[1:] else ''
         problems.warning(
             f'the mesh "{shortened(uris[0])}" is not found{others}: '
             f'{finder.reason_not_found(uris[0], file)}', places[uris[0], file])
     return problems.warnings
-
-
-def _missing_part(uri: str, file: str, finder: ResourceFinder) -> str:
-    """Return the first folder in a URI that is not found, or the URI."""
-    if uri.lower().startswith('http'):
-        return uri  # each model of Fuel is fetched by itself
-    folders = (uri[:end.start()] for end in _END_OF_FOLDER.finditer(uri))
-    return next((each for each in folders if finder.path_from_uri(each, file) is None), uri)
 
 
 def _print_annotations(problems: Iterable[SdfError | SdfWarning]) -> None:
