@@ -30,6 +30,14 @@ _LONGEST_VALUE = 80
 _LONGEST_MESSAGE = 2000
 _QUOTED = re.compile(r'"([^"]*)"')
 
+_COMMAND_OF_RUNNER = re.compile(r'#(?=#\[)|(?<!\S):(?=:)')
+"""The first character of a command of GitHub's runner: ``##[...]``, or ``::`` at the beginning."""
+
+_INVISIBLE = frozenset(map(chr, (
+    0x34f, 0x115f, 0x1160, 0x17b4, 0x17b5, 0x180b, 0x180c, 0x180d, 0x180f, 0x2800, 0x3164,
+    *range(0xfe00, 0xfe10), 0xffa0, *range(0xe0100, 0xe01f0))))
+"""Characters without a picture that count as printable (``Default_Ignorable_Code_Point``)."""
+
 _LONGEST_COMPARED = 200
 """Longer names are not compared."""
 
@@ -99,16 +107,17 @@ def printable(text: str) -> str:
     r"""
     Return text for one line of a log or a terminal.
 
-    A name in a file can contain line breaks, which must not forge a line, and characters that
-    control a terminal or the direction of writing.
+    A name in a file can contain line breaks, which must not forge a line, characters that control
+    a terminal or the direction of writing, and commands of a program that reads the log.
 
-    :return: the text with escapes, such as ``\n``, for all characters that are not printable.
+    :return: the text with escapes, such as ``\n``, for these and for characters that nobody sees.
     """
-    if text.isprintable():
+    text = _COMMAND_OF_RUNNER.sub(lambda match: f'\\x{ord(match[0]):x}', text)
+    if text.isprintable() and _INVISIBLE.isdisjoint(text):
         return text
     return ''.join(
-        character if character.isprintable() else character.encode('unicode_escape').decode()
-        for character in text)
+        character if character.isprintable() and character not in _INVISIBLE
+        else character.encode('unicode_escape').decode() for character in text)
 
 
 def hint_from_names(wanted: str, names: Iterable[str]) -> str:

@@ -76,7 +76,9 @@ def test_long_value_keeps_its_ends():
 
 @pytest.mark.parametrize(('text', 'shown'), [
     ('a\nb', r'a\nb'), ('\x9b', r'\x9b'), ('\u202e', r'\u202e'), ('\ud800', r'\ud800'),
-    ('ö 1', 'ö 1'),
+    ('ö 1', 'ö 1'), ('a\u3164', r'a\u3164'), ('a\ufe0fb', r'a\ufe0fb'),
+    ('\U000e0100', r'\U000e0100'), ('x ###[stop]', r'x #\x23#[stop]'),
+    ('::stop::', r'\x3a:stop::'), (' ::a', r' \x3a:a'), ('a::b ##x', 'a::b ##x'),
 ])
 def test_printable_text_is_one_line_without_control_characters(text, shown):
     assert printable(text) == shown

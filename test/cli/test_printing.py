@@ -84,7 +84,7 @@ def test_text_of_a_file_cannot_end_an_annotation(run_main, files):
         'attached_to="50%&#10;::error::"/></model></sdf>')
     (line,) = run_main('check', '--format', 'github', 'a,b:c%\x1b.sdf').stdout.splitlines()
     assert line.startswith(r'::error file=a%2Cb%3Ac%25\x1b.sdf,line=1,')
-    assert r'attached_to="50%25\n::error::"' in line
+    assert r'attached_to="50%25\n\x3a:error::"' in line
 
 
 def test_poses_as_csv_have_all_digits(run_main, files):

@@ -218,8 +218,8 @@ def with_limits(name, lower, upper):
 
 def test_a_joint_with_one_position_has_it_without_a_message():
     text = model_file(
-        LINKS + with_limits('free', -1, 1) + with_limits('zero', 0, 0) + with_limits('bent', 0.5, 0.5)
-        + with_limits('far', 1e10, 1e10))
+        LINKS + with_limits('free', -1, 1) + with_limits('zero', 0, 0)
+        + with_limits('bent', 0.5, 0.5) + with_limits('far', 1e10, 1e10))
     positions = positions_of(text)
     assert values_of(positions) == {'free': 0.0, 'zero': 0.0, 'bent': 0.5, 'far': 0.0}
     assert positions.unreported() == ['free', 'far']

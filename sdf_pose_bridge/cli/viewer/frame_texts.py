@@ -71,10 +71,9 @@ def html_of_frame(shown: ShownScene, frame: int, reference: int, units: Units) -
     arguments = zip(('x', 'y', 'z', 'qx', 'qy', 'qz', 'qw'), quat, strict=True)
     copied = {
         'SDF': f'<pose{_relative_to(shown, frame, reference)}>{_text(rpy)}</pose>',
-        'static_transform_publisher': ' '.join([
-            *(f'--{name} {value!r}' for name, value in arguments),
-            '--frame-id', shlex.quote(ids[reference]),
-            '--child-frame-id', shlex.quote(ids[frame])]),
+        'static_transform_publisher': shlex.join([
+            *(word for name, value in arguments for word in (f'--{name}', repr(value))),
+            '--frame-id', ids[reference], '--child-frame-id', ids[frame]]),
         'x y z, quaternion x y z w': _text(quat),
         'Franka matrix': str(franka),
     }

@@ -13,6 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping
 import os
 from pathlib import Path
 import re
+import shlex
 from typing import NamedTuple
 from urllib.parse import unquote, urlsplit
 
@@ -29,6 +30,9 @@ _WEB = ('http', 'https')
 _SHARED = ('model', 'package')
 """Schemes of URIs that begin with the name of a model or package."""
 _MODELS_OF_GAZEBO_CLASSIC = ('model://sun', 'model://ground_plane')
+
+_LONGEST_URI = 500
+"""Length of the longest URI in a command that a message advises."""
 
 _MOST_SHOWN = 5
 """Largest number of directories that a message names."""
@@ -129,8 +133,9 @@ class ResourceFinder(NamedTuple):
         """Return the reason why :meth:`path_from_uri` finds no path for a URI, with a remedy."""
         scheme, name = _scheme_and_name(uri)
         if scheme in _WEB:
-            return ('it is not in the cache of Gazebo Fuel; fetch it with: gz fuel download -u '
-                    f'"{uri}"')
+            # A longer message would be cut in its middle.
+            command = ['gz', 'fuel', 'download', '-u', uri if len(uri) <= _LONGEST_URI else 'URI']
+            return f'it is not in the cache of Gazebo Fuel; fetch it with: {shlex.join(command)}'
         beside = [] if scheme in _SHARED else [
             os.path.dirname(including_file) or '.']  # noqa: PTH120
         directories = [*dict.fromkeys((

@@ -177,10 +177,14 @@ def test_file_of_a_fuel_model_is_found_in_the_cache(tmp_path):
     assert found(uri, tmp_path, GZ_FUEL_CACHE_PATH=str(tmp_path / 'cache')) == box
 
 
-def test_reason_for_a_missing_fuel_model_says_how_to_fetch_it():
-    uri = 'https://fuel.gazebosim.org/1.0/Open/models/Box'
+@pytest.mark.parametrize(('uri', 'shown'), [
+    ('https://fuel.gazebosim.org/1.0/Open/models/Box',) * 2,
+    ('https://x/1.0/me/models/a";id;"', """'https://x/1.0/me/models/a";id;"'"""),
+    ("https://x/1.0/me/models/a';id", """'https://x/1.0/me/models/a'"'"';id'"""),
+    ('https://x/1.0/me/models/' + "'" * 1000, 'URI')])
+def test_reason_for_a_missing_fuel_model_says_how_to_fetch_it(uri, shown):
     assert resource_finder((), {}).reason_not_found(uri, 'a.sdf').endswith(
-        f'fetch it with: gz fuel download -u "{uri}"')
+        f'fetch it with: gz fuel download -u {shown}')
 
 
 @pytest.mark.parametrize(('uri', 'reason'), [
