@@ -11,6 +11,7 @@ from functools import partial
 import importlib
 from pathlib import Path
 import re
+import shlex
 import shutil
 import signal
 import subprocess
@@ -152,8 +153,8 @@ def _how_to_install() -> str:
     return (
         'python3 -m venv --system-site-packages ~/sdf_pose_view && '
         f'~/sdf_pose_view/bin/pip install {libraries}; then '
-        '"~/sdf_pose_view/bin/python -m sdf_pose_bridge view" is this command (apt has no viser, '
-        'and pip installs nothing beside the packages of apt)')
+        f'"~/sdf_pose_view/bin/python {shlex.quote(sys.argv[0])} view" is this command (apt has '
+        'no viser, and pip installs nothing beside the packages of apt)')
 
 
 def _open(address: str, port: int) -> None:

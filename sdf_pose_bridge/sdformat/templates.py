@@ -127,9 +127,9 @@ def _refuse_xacro(root: XmlElement, path: str, sources: Sources) -> None:
             target = name.removesuffix('.xacro') if is_xacro else f'expanded_{name}'
             if not Path(target).suffix:
                 target += '.sdf' if is_sdf else '.urdf'
-            command = f': xacro {shlex.quote(name)} -o {shlex.quote(target)}'
+            command = f': {shlex.join(["xacro", name, "-o", target])}' if '.' in name else ''
             msg = (f'{found[0]} is for xacro; run xacro first, and read the file that it writes'
-                   f'{command if "." in name else ""}')
+                   f'{command}')
             raise ParsingError(msg, Place(path, sources.line(xml)))
     if location is not None:
         msg = (f'{location[1]} is for xacro or launch files and is not expanded, so the file '
