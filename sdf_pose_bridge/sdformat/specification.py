@@ -312,7 +312,56 @@ _CONTENTS = {
 """The content of each element, by its tag, ``parent/tag`` or a name that ``tag=name`` uses. A key
 with commas is for several elements."""
 
+_URDF_CONTENTS = {
+    'robot': (
+        '@name @version link=urdf_link joint=urdf_joint material=urdf_material origin=urdf_origin '
+        'bullet=any collision_filter_group=any force_element=any gazebo=any loop_joint=any '
+        'mujoco=any ros2_control=any sensor=any transmission=any'),
+    'any': '*',
+    'urdf_link': (
+        '@name @type @concave inertial=urdf_inertial visual=urdf_visual collision=urdf_collision '
+        'audio_source=any bullet=any collision_checking=any contact=any '
+        'self_collision_checking=any self_filter=any sensor=any'),
+    'urdf_inertial': 'origin=urdf_origin mass=urdf_mass inertia=urdf_inertia',
+    'urdf_mass': '@value',
+    'urdf_inertia': '@ixx @ixy @ixz @iyx @iyy @iyz @izx @izy @izz',
+    'urdf_visual': (
+        '@name @group origin=urdf_origin geometry=urdf_geometry material=urdf_material '
+        'bullet=any'),
+    'urdf_collision': (
+        '@name @group @concave @mask origin=urdf_origin geometry=urdf_geometry '
+        'material=urdf_material contact_coefficients=any verbose=any'),
+    'urdf_geometry': (
+        '@name box=urdf_box cylinder=urdf_cylinder capsule=urdf_cylinder sphere=urdf_sphere '
+        'mesh=urdf_mesh cdf=any plane=any'),
+    'urdf_box': '@size',
+    'urdf_cylinder': '@length @radius',
+    'urdf_sphere': '@radius',
+    'urdf_mesh': '@filename @scale',
+    'urdf_material': '@name color=urdf_color texture=urdf_texture specular=any',
+    'urdf_color': '@rgba',
+    'urdf_texture': '@filename',
+    'urdf_joint': (
+        '@name @type @dont_collapse origin=urdf_origin parent=urdf_end child=urdf_end '
+        'axis=urdf_axis limit=urdf_limit dynamics=urdf_dynamics mimic=urdf_mimic '
+        'calibration=urdf_calibration safety_controller=urdf_safety_controller '
+        'controller_gains=any joint_properties=any traits=any'),
+    'urdf_origin': '@xyz @rpy @quat_xyzw',
+    'urdf_end': '@link',
+    'urdf_axis': '@xyz',
+    'urdf_limit': (
+        '@lower @upper @effort @velocity @acceleration @deceleration @jerk @command_effort '
+        '@current @gear_velocity'),
+    'urdf_dynamics': '@damping @friction @D @K @mu_coulomb @mu_viscous',
+    'urdf_mimic': '@joint @multiplier @offset',
+    'urdf_calibration': '@rising @falling @reference_position',
+    'urdf_safety_controller': '@soft_lower_limit @soft_upper_limit @k_position @k_velocity',
+}
+"""The same for URDF, with additions of Gazebo, ros2_control, Bullet, Drake, MuJoCo and makers of
+robots that change no frame."""
+
 ELEMENTS = {
     identifier: content
-    for identifiers, content in _CONTENTS.items() for identifier in identifiers.split(',')}
+    for contents in (_CONTENTS, _URDF_CONTENTS)
+    for identifiers, content in contents.items() for identifier in identifiers.split(',')}
 """The same for each element by itself."""

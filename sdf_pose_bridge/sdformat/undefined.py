@@ -1,21 +1,21 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Warn of elements and attributes that SDFormat does not define; most of them are misspelt.
+Warn of elements and attributes that SDFormat or URDF does not define; most of them are misspelt.
 
-libsdformat warns of the same ones (``readXml`` and ``readAttributes`` in ``parser.cc``). Names
-with a prefix, and the content of plugins, cause no warning.
+libsdformat warns of the same ones in SDFormat (``readXml`` and ``readAttributes`` in
+``parser.cc``). Names with a prefix, and the content of plugins, cause no warning.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from sdf_pose_bridge.names import NameIndex
-from sdf_pose_bridge.sdformat.grammar import Definition, Kind
+from sdf_pose_bridge.sdformat.grammar import Definition, definition_of
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import URDF_TAGS
-from sdf_pose_bridge.sdformat.xml_tree import written_tag, XmlElement
+from sdf_pose_bridge.sdformat.xml_tree import with_ancestors, written_tag, XmlElement
 
 _HINTS = {
     'origin': 'it is from URDF; SDFormat has <pose>x y z roll pitch yaw</pose>',
@@ -31,18 +31,26 @@ _HINTS = {
 """The ends of messages about elements and ``@`` attributes, by name, alone or behind the
 identifier of the element around it."""
 
-_PLACES = {
-    kind.label: f'it can stand in {" or ".join(f"<{parent}>" for parent in kind.parents)}'
-    for kind in Kind if kind.parents}
-"""The ends of messages about the kinds of elements."""
+_MOST_NAMES = 6
+"""Largest number of attributes that a message names."""
+
+_MOST_LEVELS = 3
+"""Number of levels of elements inside an element in which the place of another one is searched."""
 
 
 class UndefinedReporter:
-    """Warns of undefined elements and attributes."""
+    """
+    Warns of undefined elements and attributes.
 
-    def __init__(self, sources: Sources) -> None:
+    :param root: the definition of the outermost element, ``sdf`` or ``robot``.
+    """
+
+    def __init__(self, sources: Sources, root: str = 'sdf') -> None:
         self._sources = sources
+        self._root = root
+        self._hints = _HINTS if root == 'sdf' else {}
         self._nearest: dict[tuple[str, str, str], str] = {}
+        self._places: dict[tuple[str, str], str] = {}
 
     def report_element(self, xml: XmlElement, parent: Definition) -> None:
         """
@@ -61,14 +69,13 @@ class UndefinedReporter:
             if parent.value is not None:
                 self._sources.warning(xml, f'<include> in <{written_tag(parent_xml)}> is not read')
             return
-        likely = _PLACES.get(tag, '')
-        if tag in parent.attributes:
-            likely = f'it is an attribute: {tag}="..."'
         parent_tag, outer = written_tag(parent_xml), parent_xml.getparent()
         # <ode> and some others have several definitions, each in another element.
-        place = f'<{parent_tag}>' if parent.identifier == parent_tag or outer is None else (
-            f'<{parent_tag}> of <{written_tag(outer)}>')
-        hint = _hint(parent, tag) or likely or self._did_you_mean(
+        place = f'<{parent_tag}>' if outer is None or parent.identifier in (
+            parent_tag, f'urdf_{parent_tag}') else f'<{parent_tag}> of <{written_tag(outer)}>'
+        likely = f'it is an attribute: {tag}="..."' if tag in parent.attributes else (
+            self._place_of(tag, parent, parent_xml))
+        hint = self._hint(parent, tag) or likely or self._did_you_mean(
             tag, parent.identifier, map(str, parent.children), '<{}>')
         self._warn(xml, f'<{tag}> in {place}', hint)
 
@@ -81,9 +88,19 @@ class UndefinedReporter:
                     or self._is_only_counted()):
                 continue
             likely = f'it is an element: <{name}>' if name in definition.children else ''
-            hint = _hint(definition, f'@{name}') or likely or self._did_you_mean(
-                name, definition.identifier, definition.attributes, '{}')
+            hint = self._hint(definition, f'@{name}') or likely or self._did_you_mean(
+                name, definition.identifier, definition.attributes, '{}') or _choice_of(definition)
             self._warn(xml, f'{name}="{xml.get(name)}" of <{written_tag(xml)}>', hint)
+
+    def report_tree(self, xml: XmlElement, definition: Definition) -> None:
+        """Warn of what is not defined in an element and below it, but for extensions."""
+        self.report_attributes(xml, definition)
+        for child in xml:
+            child_definition = definition.children.get(child.tag)
+            if child_definition is None:
+                self.report_element(child, definition)
+            elif not child_definition.takes_any_children:
+                self.report_tree(child, child_definition)
 
     def _is_only_counted(self) -> bool:
         if self._sources.problems.keeps_warnings():
@@ -93,7 +110,38 @@ class UndefinedReporter:
 
     def _warn(self, xml: XmlElement, what: str, hint: str) -> None:
         ending = f'; {hint}' if hint else ''
-        self._sources.warning(xml, f'{what} is not defined in SDFormat{ending}')
+        language = 'SDFormat' if self._root == 'sdf' else 'URDF'
+        self._sources.warning(xml, f'{what} is not defined in {language}{ending}')
+
+    def _hint(self, definition: Definition, name: str) -> str:
+        return self._hints.get(f'{definition.identifier}/{name}') or self._hints.get(name, '')
+
+    def _place_of(self, tag: str, parent: Definition, parent_xml: XmlElement) -> str:
+        """Return where an element can stand: in a child of its parent, or in an outer element."""
+        key = parent.identifier, tag
+        if key not in self._places and self._sources.problems.allows_hint():
+            tags = [
+                *_tags_of_holders(tag, [parent]), *self._outer_holder(tag, parent_xml)]
+            level = [parent]
+            for _ in range(1, _MOST_LEVELS):
+                level = [child for each in level for child in _inner_definitions(each).values()]
+                tags = tags or _tags_of_holders(tag, level)
+            self._places[key] = ' or '.join(f'<{each}>' for each in tags)
+        place = self._places.get(key, '')
+        return f'it can stand in {place}' if place else ''
+
+    def _outer_holder(self, tag: str, xml: XmlElement) -> list[str]:
+        """Return the tag of the nearest element around an element that can hold another one."""
+        definition: Definition | None = definition_of(self._root, has_frames=True)
+        holder, holders = self._root, list[str]()
+        for outer in reversed([*with_ancestors(xml)][:-1]):
+            if definition is None:
+                break
+            if tag in definition.children:
+                holders = [holder]
+            holder = written_tag(outer)
+            definition = definition.children.get(outer.tag)
+        return holders
 
     def _did_you_mean(self, name: str, parent: str, names: Iterable[str], form: str) -> str:
         # Most undefined elements of a file have one of a few names.
@@ -104,5 +152,21 @@ class UndefinedReporter:
         return f'did you mean {form.format(nearest)}?' if nearest else ''
 
 
-def _hint(definition: Definition, name: str) -> str:
-    return _HINTS.get(f'{definition.identifier}/{name}') or _HINTS.get(name, '')
+
+def _choice_of(definition: Definition) -> str:
+    names = [*definition.attributes]
+    return f'it can have {", ".join(names)}' if 0 < len(names) <= _MOST_NAMES else ''
+
+
+def _inner_definitions(definition: Definition) -> Mapping[object, Definition]:
+    """Return the definitions of the child elements, without those that are not loaded."""
+    return {
+        tag: child for tag, child in definition.children.items()
+        if child.value is None and (child.has_frames or not definition.has_frames)}
+
+
+def _tags_of_holders(tag: str, definitions: Iterable[Definition]) -> list[str]:
+    """Return the tags of child elements of some elements that can hold an element."""
+    return [*dict.fromkeys(
+        str(inner) for each in definitions for inner, child in _inner_definitions(each).items()
+        if tag in child.children)]

@@ -1,11 +1,16 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Warnings of elements and attributes that SDFormat does not define."""
+"""Warnings of elements and attributes that SDFormat or URDF does not define."""
 
 import pytest
 from sdf_texts import LINK, link_with, model_file, world_file, write_files
+from urdf_texts import joint, link, robot
 
 from sdf_pose_bridge import load, load_text
+
+
+def robot_with(in_joint, in_robot=''):
+    return robot(f'{link("a")}{link("b")}{joint("j", "a", "b", "fixed", in_joint)}{in_robot}')
 
 
 def messages_of(text):
@@ -18,7 +23,15 @@ def messages_of(text):
     (model_file(LINK + '<Link name="k"/>'),
      '<Link> in <model> is not defined in SDFormat; did you mean <link>?'),
     (model_file(LINK + '<qqqq/>'), '<qqqq> in <model> is not defined in SDFormat'),
-    (link_with('<static>true</static>'), '<static> in <link> is not defined in SDFormat'),
+    (link_with('<static>true</static>'),
+     '<static> in <link> is not defined in SDFormat; it can stand in <model>'),
+    (link_with('<mass>1</mass>'),
+     '<mass> in <link> is not defined in SDFormat; it can stand in <inertial>'),
+    (link_with('<visual name="v"><uri>u</uri><geometry/></visual>'),
+     ('<uri> in <visual> is not defined in SDFormat; it can stand in <script> or <heightmap> or '
+      '<image> or <mesh>')),
+    (link_with('<sensor name="s" type="camera"><optical_frame_id>o</optical_frame_id></sensor>'),
+     '<optical_frame_id> in <sensor> is not defined in SDFormat; it can stand in <camera>'),
     (link_with('<pose>1 2 3 0 0 0<relative_to>world</relative_to></pose>'),
      ('<relative_to> in <pose> is not defined in SDFormat; it is an attribute: '
      'relative_to="..."')),
@@ -57,6 +70,20 @@ def messages_of(text):
      'relative_to="l" of <pose> is not defined in SDFormat; an inertial is placed in its link'),
     (model_file(LINK + '<plugin name="p" filename="f" file="g"/>'),
      'file="g" of <plugin> is not defined in SDFormat; did you mean filename?'),
+    (robot_with('<orgin xyz="1 0 0"/>'),
+     '<orgin> in <joint> is not defined in URDF; did you mean <origin>?'),
+    (robot_with('<mimick joint="k"/>'),
+     '<mimick> in <joint> is not defined in URDF; did you mean <mimic>?'),
+    (robot_with('<mass value="1"/>'), '<mass> in <joint> is not defined in URDF'),
+    (robot_with('<origin><xyz>1 0 0</xyz></origin>'),
+     '<xyz> in <origin> is not defined in URDF; it is an attribute: xyz="..."'),
+    (robot_with('<origin xyx="1 0 0"/>'),
+     'xyx="1 0 0" of <origin> is not defined in URDF; did you mean xyz?'),
+    (robot_with('<origin ypr="1 0 0"/>'),
+     'ypr="1 0 0" of <origin> is not defined in URDF; it can have xyz, rpy, quat_xyzw'),
+    (robot_with('', '<frame name="f"/>'), '<frame> in <robot> is not defined in URDF'),
+    (robot_with('', '<inertial/>'),
+     '<inertial> in <robot> is not defined in URDF; it can stand in <link>'),
 ])
 def test_what_is_not_defined_is_a_warning(text, message):
     assert messages_of(text) == [message]
@@ -67,6 +94,7 @@ def test_what_is_not_defined_is_a_warning(text, message):
     ('<sdf version="1.9" xmlns:x="y"><model name="m"><link name="l" x:a="b"><x:b/></link></model>'
     '</sdf>'),
     model_file(LINK + '<my:tag/>'),
+    robot_with('<my:tag/>', '<transmission><a b="c"/></transmission><ros2_control d="e"/>'),
     model_file(LINK + '<!-- <lnk/> -->'),
 ])
 def test_what_belongs_to_others_gives_no_warning(text):

@@ -15,11 +15,14 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from sdf_pose_bridge.errors import DuplicateNameError, ElementInvalidError, ParsingError
+from sdf_pose_bridge.geometry.formats import LARGEST_ANGLE_RAD
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.names import JOINT_SUFFIX, unused_name
+from sdf_pose_bridge.names import JOINT_SUFFIX, shortened, unused_name
+from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.inertials import MOMENTS
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import URDF_JOINT_TYPES
+from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
 from sdf_pose_bridge.sdformat.urdf.values import (
     is_true,
     NotFiniteError,
@@ -128,6 +131,7 @@ def robot_from_tree(root: XmlElement, sources: Sources, *, is_included: bool) ->
         are the name of a link change, each with a warning.
     :raises SdfError: if it is not valid; its ``errors`` has all errors.
     """
+    UndefinedReporter(sources, 'robot').report_tree(root, definition_of('robot'))
     errors = sources.with_own_problems()
     if root.get('name') is None:
         errors.error(ParsingError, root, 'the robot has no name')
@@ -138,7 +142,7 @@ def robot_from_tree(root: XmlElement, sources: Sources, *, is_included: bool) ->
     if not links:
         errors.error(ParsingError, root, 'the robot has no <link>')
     joints = [
-        _joint(name, xml, links, errors)
+        _joint(name, xml, links, sources, errors)
         for name, xml in _named_children(root, 'joint', errors).items()]
     origin = _robot_origin(root, sources, errors)
     errors.problems.raise_errors()
@@ -225,7 +229,7 @@ def _robot_origin(root: XmlElement, sources: Sources, errors: Sources) -> Pose:
                 errors.error(ElementInvalidError, origin, str(error))
             except ValueError as error:
                 sources.warning(origin, f'{error}; libsdformat takes zeros for it')
-    return pose_from_xyz_rpy(**numbers)
+    return _pose_of_origin(origin, numbers, sources)
 
 
 def _link(name: str, xml: XmlElement, sources: Sources, errors: Sources) -> Link:
@@ -235,13 +239,13 @@ def _link(name: str, xml: XmlElement, sources: Sources, errors: Sources) -> Link
         inertial_xml = first_child(xml, 'inertial')
         if inertial_xml is not None:
             inertial = Inertial()
-            inertial = Inertial(origin=_origin(inertial_xml))
+            inertial = Inertial(origin=_origin(inertial_xml, sources))
             mass = numbers_of(_required_child(inertial_xml, 'mass'), 'value!')
             inertial = inertial._replace(mass=mass['value'][0])
             inertia = numbers_of(_required_child(inertial_xml, 'inertia'), _INERTIA)
             inertial = inertial._replace(moments=tuple(inertia[name][0] for name in MOMENTS))
         for shape in (*child_elements(xml, 'visual'), *child_elements(xml, 'collision')):
-            shapes.append(_shape(shape))  # noqa: PERF401  # those before a fault are kept
+            shapes.append(_shape(shape, sources))  # noqa: PERF401  # those before a fault are kept
     except NotFiniteError as error:
         errors.error(ElementInvalidError, xml, str(error))
     except ValueError as error:
@@ -250,7 +254,7 @@ def _link(name: str, xml: XmlElement, sources: Sources, errors: Sources) -> Link
 
 
 def _joint(
-    name: str, xml: XmlElement, links: Mapping[str, Link], errors: Sources,
+    name: str, xml: XmlElement, links: Mapping[str, Link], sources: Sources, errors: Sources,
 ) -> Joint | None:
     ends = []
     for tag in ('parent', 'child'):
@@ -281,7 +285,7 @@ def _joint(
             if tag == 'dynamics' and not values[tag]:
                 errors.error(
                     ParsingError, part, 'the <dynamics> has neither damping nor friction')
-        return Joint(xml, name, type_name, _origin(xml), ends[0], ends[1], values)
+        return Joint(xml, name, type_name, _origin(xml, sources), ends[0], ends[1], values)
     except ValueError as error:
         error_class = ElementInvalidError if isinstance(error, NotFiniteError) else ParsingError
         errors.error(error_class, xml, str(error))
@@ -296,14 +300,23 @@ def _required_child(xml: XmlElement, tag: str) -> XmlElement:
     return child
 
 
-def _origin(xml: XmlElement) -> Pose:
+def _origin(xml: XmlElement, sources: Sources) -> Pose:
     origin = first_child(xml, 'origin')
     numbers = {} if origin is None else numbers_of(origin, 'xyz:3 rpy:3')
+    return _pose_of_origin(origin, numbers, sources)
+
+
+def _pose_of_origin(origin: XmlElement | None, numbers: Numbers, sources: Sources) -> Pose:
+    if origin is not None and any(
+            abs(angle) > LARGEST_ANGLE_RAD for angle in numbers.get('rpy', ())):
+        sources.warning(
+            origin, f'the angles rpy="{shortened(origin.get("rpy", ""))}" of <origin> are '
+            'radians; they look like degrees')
     return pose_from_xyz_rpy(**numbers)
 
 
-def _shape(xml: XmlElement) -> Shape:
-    origin = _origin(xml)
+def _shape(xml: XmlElement, sources: Sources) -> Shape:
+    origin = _origin(xml, sources)
     geometry = next(child_elements(_required_child(xml, 'geometry')), None)
     if geometry is None or geometry.tag not in _SHAPES:
         msg = f'the <geometry> of <{written_tag(xml)}> must hold one of {", ".join(_SHAPES)}'

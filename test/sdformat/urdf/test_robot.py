@@ -109,6 +109,23 @@ def test_center_of_mass_counts_though_the_mass_is_missing(tmp_path):
     assert load(tmp_path / 'w.sdf').pose('r::a::inertial')[5] == pytest.approx(math.sin(0.15))
 
 
+@pytest.mark.parametrize('text', [
+    robot(TWO + joint('j', 'a', 'b', content=origin(rpy='0 0 90'))),
+    robot(link('a', shape('visual', origin(rpy='0 0 90')))),
+    robot('<link name="a"><inertial><origin rpy="0 0 90"/></inertial></link>'),
+    robot(origin(rpy='0 0 90') + link('a')),
+])
+def test_angles_that_look_like_degrees_have_a_warning(text):
+    messages = [warning.message for warning in load_text(text).warnings]
+    assert ('the angles rpy="0 0 90" of <origin> are radians; they look like degrees'
+            in messages)
+
+
+def test_a_turn_in_radians_has_no_warning():
+    text = robot(TWO + joint('j', 'a', 'b', content=origin(rpy='6.3 0 -6.3')))
+    assert load_text(text).warnings == ()
+
+
 def test_links_in_a_cycle_are_left_out_with_a_warning():
     scene = load_text(robot(
         link('c') + TWO + joint('j', 'a', 'b') + joint('k', 'b', 'a')))
