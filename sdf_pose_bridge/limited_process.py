@@ -15,16 +15,17 @@ import contextlib
 import ctypes
 import errno
 import gc
+import math
 import os
 import pickle
 import resource
+import select
 import signal
 import socket
 import struct
-import threading
 import time
 import traceback
-from typing import BinaryIO, NoReturn, TypeVar
+from typing import BinaryIO, Generic, NoReturn, TypeVar
 
 from sdf_pose_bridge.process_limits import Allowance, limited, LimitExceededError
 
@@ -42,21 +43,23 @@ _ENDED = b'e'
 _NOT_STARTED = b'n'
 """The number is the error number."""
 
+_NO_MEMORY = 'there is not enough memory to read the file'
+
 _Result = TypeVar('_Result')
 
 
 class ProcessEndedError(Exception):
-    """The process ended before it answered, or could not be started."""
+    """The process ended before it answered, or could not be started, or there is no memory."""
 
-    def __init__(self, message: str, *, may_pass: bool) -> None:
+    def __init__(self, message: str, *, is_temporary: bool) -> None:
         super().__init__(message)
-        self.may_pass = may_pass
+        self.is_temporary = is_temporary
         """Whether the same call may succeed later, because it did not end the process itself."""
 
 
 class LimitedProcess:
     """
-    Calls functions in other processes, one after the other.
+    Calls functions in other processes.
 
     It must be made by the main thread while there is no other thread. All methods are thread-safe.
     The other processes end with this one, also when it is killed.
@@ -65,7 +68,6 @@ class LimitedProcess:
     """
 
     def __init__(self, prepare: Callable[[], None] = lambda: None) -> None:
-        self._lock = threading.Lock()
         self._calls, calls = socket.socketpair()
         self._calls.setblocking(False)
         # These signals are for this process, which ends the other ones.
@@ -81,22 +83,27 @@ class LimitedProcess:
 
     def call(
         self, allowance: Allowance, function: Callable[..., _Result], *arguments: object,
-        meanwhile: Callable[[], None] | None = None,
     ) -> _Result:
         """
-        Call a function in a process of its own.
+        Call a function in a process of its own, and wait for its result.
+
+        :return: as :meth:`Call.result`.
+        :raises Exception: as :meth:`start` and :meth:`Call.result`.
+        """
+        with self.start(allowance, function, *arguments) as call:
+            return call.result()
+
+    def start(
+        self, allowance: Allowance, function: Callable[..., _Result], *arguments: object,
+    ) -> Call[_Result]:
+        """
+        Call a function in a process of its own; ``with`` ends it at the end of the block.
 
         :param allowance: the limits of the process.
         :param function: a function of a module; its arguments and result can be pickled.
-        :param meanwhile: a function to call here while the other one runs.
-        :return: its result.
-        :raises LimitExceededError: if it exceeds a limit, or takes ``WAITING_S`` longer than the
-            allowed processor time.
-        :raises ProcessEndedError: if the process ends during the call, or cannot be started.
-        :raises MemoryError: if this process has no memory for the call or for its answer.
-        :raises Exception: any exception of the function.
+        :raises ProcessEndedError: if the process cannot be started.
         """
-        with self._lock, contextlib.ExitStack() as stack:
+        with contextlib.ExitStack() as stack:
             try:
                 # Call and answer are in memory, so no process waits for another one to read.
                 file = stack.enter_context(open(os.memfd_create('call'), 'r+b'))  # noqa: PTH123
@@ -109,65 +116,111 @@ class LimitedProcess:
                 pass  # the waiting process has ended, as its missing status shows
             except OSError as error:
                 msg = f'the process that reads files cannot be started: {error}'
-                raise ProcessEndedError(msg, may_pass=True) from error
+                raise ProcessEndedError(msg, is_temporary=True) from error
+            except MemoryError:
+                raise ProcessEndedError(_NO_MEMORY, is_temporary=True) from None
             other_end.close()
-            if meanwhile is not None:
-                meanwhile()
-            self._wait_for_end(status, allowance)
-            file.seek(0)
-            # Other threads can run after each piece.
-            result, exception, text = pickle.load(file)
-        if exception is not None:
-            raise exception from RuntimeError(f'in another process:\n{text}')
-        return result  # type: ignore[no-any-return]
+            return Call(self, allowance, file, status, stack.pop_all())
 
     def close(self) -> None:
-        """End the processes; a call that is running, and further ones, fail."""
+        """End the processes; calls that are running, and further ones, fail."""
         pid, self._pid = self._pid, 0
         if pid:
             os.kill(pid, signal.SIGKILL)
             os.waitpid(pid, 0)
             self._calls.close()
 
-    def _wait_for_end(self, status: socket.socket, allowance: Allowance) -> None:
-        """
-        Wait until the process of a call has answered and ended.
 
-        :raises LimitExceededError: as :meth:`call`.
-        :raises ProcessEndedError: as :meth:`call`.
+class Call(Generic[_Result]):
+    """
+    A call of a function in a process of its own, which has been started.
+
+    :param file: gets the answer.
+    :param status: gets reports about the process.
+    :param opened: closes both.
+    """
+
+    def __init__(
+        self, process: LimitedProcess, allowance: Allowance, file: BinaryIO,
+        status: socket.socket, opened: contextlib.ExitStack,
+    ) -> None:
+        self._process = process
+        self._allowance = allowance
+        self._file = file
+        self._status = status
+        self._opened = opened
+        self._begin = time.monotonic()
+        self._pid = 0
+        self._end: tuple[bytes, int, float] | None = None
+
+    def __enter__(self) -> Call[_Result]:
+        return self
+
+    def __exit__(self, *_exception: object) -> None:
+        with contextlib.suppress(LimitExceededError, ProcessEndedError):
+            self.has_ended(0.0)  # the process may have begun since then
+        if self._pid and self._end is None:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(self._pid, signal.SIGKILL)
+        self._opened.close()
+
+    def has_ended(self, timeout_s: float) -> bool:
         """
-        begin, pid, event = time.monotonic(), 0, _BEGUN
-        try:
-            while event == _BEGUN:
-                longest_s = allowance.processor_s + WAITING_S
-                with contextlib.suppress(OSError):  # the process has ended
-                    if pid:
-                        # It has raised its own limit if it has read much.
-                        soft, _ = resource.prlimit(pid, resource.RLIMIT_CPU)
-                        longest_s = max(longest_s, soft + WAITING_S)
-                left_s = begin + longest_s - time.monotonic()
-                if left_s <= 0.0:
-                    msg = f'more than {longest_s:.0f} s'
-                    raise LimitExceededError(msg)
-                status.settimeout(left_s)
-                with contextlib.suppress(TimeoutError):
-                    message = status.recv(_STATUS.size)
-                    if not message:
-                        self.close()
-                        msg = ('the process that starts the reading of files has ended; start '
-                               'this program again')
-                        raise ProcessEndedError(msg, may_pass=False)
-                    event, number, processor_s = _STATUS.unpack(message)
-                    if event == _BEGUN:
-                        pid = number
-        except BaseException:
-            if pid:
-                with contextlib.suppress(ProcessLookupError):
-                    os.kill(pid, signal.SIGKILL)
-            raise
+        Wait until the process has answered or ended.
+
+        :param timeout_s: the longest time in s.
+        :return: whether it has; then :meth:`result` need not wait.
+        :raises LimitExceededError: if it takes ``WAITING_S`` longer than the allowed processor
+            time.
+        :raises ProcessEndedError: if the waiting process has ended.
+        """
+        ends_at = time.monotonic() + timeout_s
+        while self._end is None:
+            longest_s = self._allowance.processor_s + WAITING_S
+            with contextlib.suppress(OSError):  # the process has ended
+                if self._pid:
+                    # It has raised its own limit if it has read much.
+                    soft, _ = resource.prlimit(self._pid, resource.RLIMIT_CPU)
+                    longest_s = max(longest_s, soft + WAITING_S)
+            now = time.monotonic()
+            if now >= self._begin + longest_s:
+                msg = f'more than {longest_s:.0f} s'
+                raise LimitExceededError(msg)
+            self._status.settimeout(max(min(ends_at, self._begin + longest_s) - now, 1e-6))
+            try:
+                message = self._status.recv(_STATUS.size)
+            except TimeoutError:
+                if time.monotonic() >= ends_at:
+                    return False
+                continue
+            if not message:
+                self._process.close()
+                msg = ('the process that starts the reading of files has ended; start this '
+                       'program again')
+                raise ProcessEndedError(msg, is_temporary=False)
+            report = _STATUS.unpack(message)
+            if report[0] == _BEGUN:
+                self._pid = report[1]
+            else:
+                self._end = report
+        return True
+
+    def result(self) -> _Result:
+        """
+        Wait for the end of the process.
+
+        :return: the result of the function.
+        :raises LimitExceededError: if it exceeds a limit, or as :meth:`has_ended`.
+        :raises ProcessEndedError: if the process ends during the call, or cannot be started, or if
+            there is no memory for its answer.
+        :raises Exception: any exception of the function.
+        """
+        self.has_ended(math.inf)
+        assert self._end is not None
+        event, number, processor_s = self._end
         if event == _NOT_STARTED:
             msg = f'the process that reads files cannot be started: {os.strerror(number)}'
-            raise ProcessEndedError(msg, may_pass=True)
+            raise ProcessEndedError(msg, is_temporary=True)
         if number == -signal.SIGXCPU:
             msg = f'more than {processor_s:.0f} s of processor time'
             raise LimitExceededError(msg)
@@ -175,7 +228,18 @@ class LimitedProcess:
             how = f'by signal {-number}' if number < 0 else f'with exit code {number}'
             # The kernel uses this signal when memory runs out.
             msg = f'the process that reads files has ended {how}'
-            raise ProcessEndedError(msg, may_pass=number == -signal.SIGKILL)
+            raise ProcessEndedError(msg, is_temporary=number == -signal.SIGKILL)
+        self._file.seek(0)
+        try:
+            # Other threads can run after each piece.
+            result, exception, text = pickle.load(self._file)
+        except MemoryError:
+            raise ProcessEndedError(_NO_MEMORY, is_temporary=True) from None
+        if isinstance(exception, MemoryError):
+            raise ProcessEndedError(_NO_MEMORY, is_temporary=True)
+        if exception is not None:
+            raise exception from RuntimeError(f'in another process:\n{text}')
+        return result  # type: ignore[no-any-return]
 
 
 def _serve(calls: socket.socket, prepare: Callable[[], None]) -> NoReturn:
@@ -190,24 +254,55 @@ def _serve(calls: socket.socket, prepare: Callable[[], None]) -> NoReturn:
         nowhere = os.open(os.devnull, os.O_WRONLY)
         for descriptor in (1, 2):
             os.dup2(nowhere, descriptor)
-        while (received := socket.recv_fds(calls, 1, 2))[0]:
-            with (
-                open(received[1][0], 'r+b') as file,  # noqa: PTH123
-                socket.socket(fileno=received[1][1]) as status,
-                contextlib.suppress(BrokenPipeError),  # the caller waits no longer
-            ):
-                try:
-                    pid = os.fork()
-                except OSError as error:
-                    status.sendall(_STATUS.pack(_NOT_STARTED, error.errno or errno.EAGAIN, 0.0))
+        poll = select.poll()
+        poll.register(calls, select.POLLIN)
+        # The process and the caller of each call, by a descriptor of the process.
+        running: dict[int, tuple[int, socket.socket]] = {}
+        while True:
+            for descriptor, _ in poll.poll():
+                if descriptor in running:
+                    poll.unregister(descriptor)
+                    os.close(descriptor)
+                    _report_end(*running.pop(descriptor))
                     continue
-                if pid == 0:
-                    _answer_call(file, status)
-                _, code, usage = os.wait4(pid, 0)
-                status.sendall(_STATUS.pack(
-                    _ENDED, os.waitstatus_to_exitcode(code), usage.ru_utime + usage.ru_stime))
+                _, descriptors, _, _ = socket.recv_fds(calls, 1, 2)
+                if not descriptors:
+                    os._exit(1)
+                status = socket.socket(fileno=descriptors[1])
+                with open(descriptors[0], 'r+b') as file:  # noqa: PTH123
+                    pid = _process_of_call(file, status)
+                if pid:
+                    descriptor = os.pidfd_open(pid)
+                    running[descriptor] = pid, status
+                    poll.register(descriptor, select.POLLIN)
     finally:
         os._exit(1)
+
+
+def _process_of_call(file: BinaryIO, status: socket.socket) -> int:
+    """Fork for a call, and return the id of the process; 0 after a report that there is none."""
+    try:
+        pid = os.fork()
+    except OSError as error:
+        _report(status, _NOT_STARTED, error.errno or errno.EAGAIN)
+        return 0
+    if pid == 0:
+        _answer_call(file, status)
+    return pid
+
+
+def _report_end(pid: int, status: socket.socket) -> None:
+    """Report the end of a process."""
+    _, code, usage = os.wait4(pid, 0)
+    _report(status, _ENDED, os.waitstatus_to_exitcode(code), usage.ru_utime + usage.ru_stime)
+
+
+def _report(
+    status: socket.socket, event: bytes, number: int, processor_s: float = 0.0,
+) -> None:
+    """Send the last report about a call."""
+    with status, contextlib.suppress(BrokenPipeError):  # the caller waits no longer
+        status.sendall(_STATUS.pack(event, number, processor_s))
 
 
 def _answer_call(file: BinaryIO, status: socket.socket) -> NoReturn:

@@ -117,10 +117,25 @@ def test_much_can_be_sent_both_ways(process):
     assert process.call(AMPLE, str.upper, text) == text.upper()
 
 
-def test_something_else_can_be_done_meanwhile(process):
-    done = []
-    assert process.call(AMPLE, pow, 2, 2, meanwhile=lambda: done.append(os.getpid())) == 4
-    assert done == [os.getpid()]
+def test_a_call_that_has_been_started_is_answered_later(process):
+    with process.start(AMPLE, pow, 2, 2) as call:
+        assert process.call(AMPLE, os.getpid) != os.getpid()
+        assert call.has_ended(DEADLINE_S)
+        assert call.result() == 4
+
+
+def test_a_call_keeps_no_other_one_waiting(process):
+    with process.start(AMPLE, exec, SPIN, {}) as call:
+        assert process.call(AMPLE, pow, 2, 2) == 4
+        assert not call.has_ended(0.01)
+
+
+def test_a_call_ends_with_its_block(process_with_pipe):
+    process, reader, writer = process_with_pipe
+    code = f'import os; os.write({writer}, b"%d" % os.getpid())\n{SPIN}'
+    with process.start(AMPLE, exec, code, {}):
+        pid = int(os.read(reader, 20))
+    assert has_ended(pid)
 
 
 @pytest.mark.parametrize(('allowance', 'code', 'message'), [
@@ -196,7 +211,7 @@ def test_a_signal_to_the_group_is_not_for_it(busy_pid, number):
 def test_a_process_that_ends_itself_would_do_so_again(process, code, message):
     with pytest.raises(ProcessEndedError, match=message) as caught:
         process.call(AMPLE, exec, code, {})
-    assert not caught.value.may_pass
+    assert not caught.value.is_temporary
 
 
 @pytest.mark.parametrize(('function', 'message'), [
@@ -256,7 +271,7 @@ def test_a_waiting_process_that_is_killed_is_an_error_that_stays(process, busy_p
     for _ in range(2):
         with pytest.raises(ProcessEndedError, match=STARTER_ENDED) as caught:
             process.call(AMPLE, pow, 2, 2)
-        assert not caught.value.may_pass
+        assert not caught.value.is_temporary
 
 
 def test_without_descriptors_a_call_is_an_error_that_passes(process):
@@ -267,7 +282,7 @@ def test_without_descriptors_a_call_is_an_error_that_passes(process):
             process.call(AMPLE, pow, 2, 2)
     finally:
         resource.setrlimit(resource.RLIMIT_NOFILE, limits)
-    assert caught.value.may_pass
+    assert caught.value.is_temporary
     assert process.call(AMPLE, pow, 2, 2) == 4
 
 

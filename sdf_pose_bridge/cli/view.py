@@ -169,7 +169,7 @@ def _open(address: str, port: int) -> None:
 def _follow(pages: Any, watcher: FileWatcher, load: Callable[[], Scene]) -> None:
     """Process requests, and show the file again if it or an included file has changed."""
     pages.act(_PERIOD_S)
-    if not watcher.has_changed():
+    if not watcher.notices_change():
         return
     # Some editors write in steps, and a file that has just changed would be read twice.
     pages.act(_SETTLING_S)

@@ -10,6 +10,8 @@ import os
 import signal
 import sys
 
+from sdf_pose_bridge.ros.ending import end_without_memory
+
 LINK_COMMAND = 'ln -s sdf_pose_bridge/sdf_pose_bridge_interfaces .'
 """Shows colcon the second package, in the folder ``src`` of a workspace."""
 
@@ -59,7 +61,9 @@ def main(args: Sequence[str] | None = None, program: str = 'bridge') -> int:
     except ImportError as error:
         print(f'sdf_pose_bridge: {sentence_from_import_error(error)}', file=sys.stderr)
         return 1
-    except (MemoryError, OSError) as error:  # such as too many open files
+    except MemoryError:
+        end_without_memory()
+    except OSError as error:  # such as too many open files
         print(f'sdf_pose_bridge: the node cannot start: {error}', file=sys.stderr)
         return 1
 

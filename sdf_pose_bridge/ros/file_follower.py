@@ -9,7 +9,7 @@ import math
 import time
 
 from sdf_pose_bridge.sdformat.file_watcher import FileWatcher
-from sdf_pose_bridge.tf.loaded_scene import LoadedScene, may_pass
+from sdf_pose_bridge.tf.loaded_scene import is_temporary, LoadedScene
 
 RETRY_PERIOD_S = 1.0
 """Seconds until the files are read again after a temporary failure."""
@@ -38,21 +38,15 @@ class FileFollower:
 
     def retry_after(self, error: Exception) -> None:
         """Read the files again soon if the error is a temporary one."""
-        self._retry_time = time.monotonic() + RETRY_PERIOD_S if may_pass(error) else math.inf
+        self._retry_time = time.monotonic() + RETRY_PERIOD_S if is_temporary(error) else math.inf
 
     def follow_also(self, files: Iterable[str]) -> None:
         """Follow more files, those that have to change before reading can succeed."""
         self._watcher.watch_also(files)
 
-    def is_due(self) -> bool:
-        """Return whether there is something to read or to report; any thread may ask."""
-        return (
-            self._failure != self._reported or time.monotonic() >= self._retry_time
-            or self._watcher.differs())
-
     def has_to_read(self) -> bool:
         """Return whether the files have to be read again, and remember their state."""
-        return self._watcher.has_changed() or time.monotonic() >= self._retry_time
+        return self._watcher.notices_change() or time.monotonic() >= self._retry_time
 
     def failure_of_period(self, failure: list[str] | None) -> list[str]:
         """

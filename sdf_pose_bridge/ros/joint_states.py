@@ -31,7 +31,7 @@ from rclpy.exceptions import InvalidHandle
 from rclpy.node import Node
 from rclpy.task import Future
 
-from sdf_pose_bridge.ros.background import wake
+from sdf_pose_bridge.ros.background import result_from_executor, wake
 from sdf_pose_bridge.ros.cdr import NANOSECONDS
 from sdf_pose_bridge.ros.joint_state_topic import JointStateTopic, Meaning, Meanings, Message
 from sdf_pose_bridge.ros.log_lines import line_about_unreported_joints, MissingJoints
@@ -39,9 +39,7 @@ from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
 from sdf_pose_bridge.ros.topic_names import JointStateTopics
 from sdf_pose_bridge.ros.wait_set import WaitSet
-
-SUBSCRIPTIONS_AT_ONCE = 40
-"""Number of subscriptions, made in some 20 milliseconds, before other callbacks run."""
+from sdf_pose_bridge.tf.lookup import PoseLookup
 
 INITIAL_PERIOD_S = 0.1
 """Period of ``/tf`` before the first message, if joints are at zero then."""
@@ -67,6 +65,7 @@ class _Target(NamedTuple):
     """The frames, topics and settings that the thread follows."""
 
     frames: PublishedMovingFrames
+    lookup: PoseLookup
     topics: Sequence[JointStateTopic]
     settings: Settings
 
@@ -81,22 +80,23 @@ class JointStates:
     """
     Follows topics of joint states, and publishes the frames that their messages move.
 
-    A thread does this from its construction to :meth:`end`; the executor of the node calls all
-    public methods.
+    A thread does this from its construction to :meth:`end`. It is constructed beside the executor
+    of the node, which makes and destroys the subscriptions.
+
+    :param lookup: looks up poses at the positions of these frames.
     """
 
     def __init__(
-        self, node: Node, frames: PublishedMovingFrames, topics: JointStateTopics,
-        settings: Settings,
+        self, node: Node, frames: PublishedMovingFrames, lookup: PoseLookup,
+        topics: JointStateTopics, settings: Settings,
     ) -> None:
         self._node = node
         self._logger = node.get_logger()
         # By their names before they are remapped, with their models.
         self._topics: dict[tuple[str, str], JointStateTopic] = {}
-        self._missing_topics: list[tuple[str, str]] = []
         self._warnings: tuple[str, ...] = ()
         self._wait_set = WaitSet(node.context)
-        self._target = self._next_target = _Target(frames, (), settings)
+        self._target = self._next_target = _Target(frames, lookup, (), settings)
         # The thread makes them when it has processed the messages that came before.
         self._calls: deque[Callable[[], object]] = deque()
         self._has_to_end = False
@@ -108,49 +108,57 @@ class JointStates:
         self._has_moved = self._has_reported_missing = False
         self._start_frames()
         self._end_period()
-        self.follow(frames, topics, settings)
         self._thread = threading.Thread(target=self._run, name='joint states', daemon=True)
         self._thread.start()
+        self.follow(frames, lookup, topics, settings)
         node.context.on_shutdown(self.end)
 
-    # Calls of the executor
+    # Calls of the loader and, for look-ups, of the executor
 
     def follow(
-        self, frames: PublishedMovingFrames, topics: JointStateTopics, settings: Settings,
+        self, frames: PublishedMovingFrames, lookup: PoseLookup, topics: JointStateTopics,
+        settings: Settings,
     ) -> None:
-        """Change what is followed; joints with the same names keep their positions."""
+        """
+        Change what is followed; joints with the same names keep their positions.
+
+        When this returns, the thread publishes nothing of the frames before.
+        """
         if topics.warnings != self._warnings:
             self._warnings = topics.warnings
             for line in topics.warnings:
                 self._logger.warning(line)
-        before = self._next_target.frames.positions
-        if frames.positions is not before:
-            # Look-ups do not wait until the thread does it again.
-            frames.positions.take_over(before)
         wanted = topics.models.items()
         unwanted = [self._topics.pop(key) for key in self._topics.keys() - wanted]
-        self._missing_topics = [key for key in wanted if key not in self._topics]
+        for key in [key for key in wanted if key not in self._topics]:
+            self._open(*key)
         self._topic_count = len(wanted)
-        self._next_target = _Target(frames, tuple(self._topics.values()), settings)
-        self._open_missing_topics()
+        self._next_target = _Target(frames, lookup, tuple(self._topics.values()), settings)
+        self.wait()
         for topic in unwanted:
-            self._node.destroy_subscription(topic.subscription)
+            self._close(topic)
 
     def publish_topics(self) -> None:
         """Publish all moving frames on ``~/transforms`` and ``~/poses/...`` soon."""
         self._calls.append(lambda: self._due.update({self._publish_at_rest: 0.0}))
         self._wake()
 
-    def catch_up(self) -> Future:
-        """Return a future that is done when all calls and messages so far are processed."""
+    def wait(self) -> None:
+        """Wait until all messages so far are processed."""
+        has_come = threading.Event()
+        self._calls.append(has_come.set)
+        self._wake()
+        has_come.wait()
+
+    def current_lookup(self) -> Future:
+        """Return a future for the look-up of poses, when all messages so far are processed."""
         future = Future()
-        self._calls.append(lambda: future.set_result(None))
+        self._calls.append(lambda: future.set_result(self._target.lookup))
         self._wake()
         return future
 
     def end(self) -> None:
-        """End the thread, and destroy the subscriptions."""
-        self._missing_topics.clear()
+        """End the thread, and destroy the subscriptions; the executor calls this."""
         self._has_to_end = True
         self._wake()
         self._thread.join()
@@ -167,21 +175,19 @@ class JointStates:
             topic.name for topic in target.topics if not positions.unknown(found[:1], topic.model)
         ]) if found else MissingJoints()
 
-    def _open_missing_topics(self) -> None:
-        """Make some subscriptions now, and leave the others to a task."""
-        now = self._missing_topics[:SUBSCRIPTIONS_AT_ONCE]
-        del self._missing_topics[:SUBSCRIPTIONS_AT_ONCE]
-        for key in now:
-            try:
-                self._topics[key] = JointStateTopic(self._node, *key)
-            except (RuntimeError, ValueError) as error:
-                # Security may forbid it. The rest of the message names lines of the source of ROS.
-                reason = str(error).partition(', at /')[0]
-                self._logger.warning(f'no subscription to {key[0]}: {reason}')
-        self._next_target = self._next_target._replace(topics=tuple(self._topics.values()))
-        self._wake()
-        if self._missing_topics:
-            self._node.executor.create_task(self._open_missing_topics)
+    def _open(self, name: str, model: str) -> None:
+        # The executor goes on between two of them.
+        try:
+            self._topics[name, model] = result_from_executor(
+                self._node, lambda: JointStateTopic(self._node, name, model))
+        except (RuntimeError, ValueError) as error:
+            # Security may forbid it. The rest of the message names lines of the source of ROS.
+            reason = str(error).partition(', at /')[0]
+            self._logger.warning(f'no subscription to {name}: {reason}')
+
+    def _close(self, topic: JointStateTopic) -> None:
+        result_from_executor(
+            self._node, lambda: self._node.destroy_subscription(topic.subscription))
 
     def _wake(self) -> None:
         # The thread may have ended with the node.
@@ -195,10 +201,9 @@ class JointStates:
             try:
                 self._turn()
             except InvalidHandle:
-                # A topic has been destroyed, which follows a change of the target; or the node.
-                if self._target is self._next_target:
-                    break
-                self._follow_next_target()
+                break  # the node was destroyed
+            except MemoryError:
+                raise
             except Exception as error:  # noqa: BLE001 - includes defects
                 self._logger.error(
                     f'internal error in joint states: {error}\n{traceback.format_exc()}',

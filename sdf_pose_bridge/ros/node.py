@@ -1,28 +1,29 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The node: publishes a file, and follows changes of its parameters and of the file."""
+"""
+The node: publishes a file, and follows changes of its parameters and of the file.
+
+One thread, the loader, does one request after the other, and between them what is due. The
+executor of the node only answers: it hands requests to the loader and awaits their results.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-import contextlib
+from collections.abc import Callable, Sequence
+import math
 import time
 import traceback
-from typing import TYPE_CHECKING
+from typing import Any, TYPE_CHECKING
 
 from rcl_interfaces.msg import SetParametersResult
-from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
-from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rclpy.task import Future
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
 from sdf_pose_bridge.errors import AddressError, SdfError
 from sdf_pose_bridge.problems import folded
-from sdf_pose_bridge.ros.background import CoroutineLock, PollingThread, Worker
-from sdf_pose_bridge.ros.cdr import NANOSECONDS
+from sdf_pose_bridge.ros.background import Periodic, result_from_executor, Worker
 from sdf_pose_bridge.ros.diagnostics import Diagnostics, PERIOD_S
 from sdf_pose_bridge.ros.file_follower import FileFollower
 from sdf_pose_bridge.ros.given_parameters import changed_settings, ParameterServices
@@ -38,13 +39,13 @@ from sdf_pose_bridge.ros.log_lines import (
 from sdf_pose_bridge.ros.parameters import Settings, SettingsError
 from sdf_pose_bridge.ros.published_frames import frames_from_scene, PublishedFrames
 from sdf_pose_bridge.ros.publishers import SwitchedPublisher, Topic
-from sdf_pose_bridge.ros.scene_reader import SceneReader
+from sdf_pose_bridge.ros.scene_reader import loaded_scene, SceneReader
 from sdf_pose_bridge.ros.services import add_services, SERVICE_QOS, set_pose
 from sdf_pose_bridge.ros.topic_names import (
     check_number_of_topics,
     joint_state_topics_from_patterns,
 )
-from sdf_pose_bridge.tf.loaded_scene import LoadedScene
+from sdf_pose_bridge.tf.loaded_scene import LoadedScene, LoadRequest
 from sdf_pose_bridge.tf.loading import files_behind_error
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge_interfaces.srv import SetPose
@@ -52,103 +53,242 @@ from sdf_pose_bridge_interfaces.srv import SetPose
 if TYPE_CHECKING:
     from sdf_pose_bridge.ros.joint_states import JointStates
 
+LOOKING_PERIOD_S = 0.25
+"""Seconds between two looks at the files."""
+
+LARGEST_SHARE = 0.001
+"""Largest share of a core for looking at them; if that takes long, the period gets longer."""
+
+LONGEST_WAIT_S = 0.1
+"""Longest time in s for which a call in another process is awaited at once."""
+
 
 class SdfPoseBridge:
     """
-    The node after the first scene is published.
+    The node from the moment at which its fixed frames are on ``/tf_static``.
 
-    :param node: the node, with declared parameters and an executor.
-    :param frames: the frames of the scene, which are published.
+    The loader constructs it, which publishes everything else and starts the services, and calls
+    all methods but those of the executor. Whatever fails after a change was begun ends the
+    process, as another thread would go on with half of it.
+
+    :param node: the node, with declared parameters and an executor in another thread.
+    :param loader: the thread.
+    :param frames: the frames of the scene, which are published on ``/tf_static``.
+    :param reader: reads files.
     :param parameter_services: those of the node, which answer from then on.
-    :param worker: does what would block the executor.
     """
 
     def __init__(
-        self, node: Node, frames: PublishedFrames, settings: Settings, loaded: LoadedScene,
-        reader: SceneReader, parameter_services: ParameterServices, worker: Worker,
+        self, node: Node, loader: Worker, frames: PublishedFrames, settings: Settings,
+        loaded: LoadedScene, reader: SceneReader, parameter_services: ParameterServices,
     ) -> None:
         self._node = node
         self._logger = node.get_logger()
+        self._loader = loader
         self._frames = frames
         self._settings = settings
         self._loaded = loaded
         self._reader = reader
-        self._worker = worker
         self._joint_states: JointStates | None = None
         self._diagnostics = Diagnostics(
             node, lambda: self._joint_states.unreported if self._joint_states else MissingJoints())
         self._has_told_of_joints = False
         self._follower = FileFollower(loaded)
-        # All callbacks that change the published scene run one after the other.
-        self._changes = parameter_services.group
-        # Held while publishing on all topics. A timer that is always due would block the callbacks
-        # of its group, so it has a separate group.
-        self._publishing = CoroutineLock(node)
-        # Simulated time may stand still.
-        steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
-        self._again_timer = node.create_timer(
-            1.0, self._publish_again, callback_group=MutuallyExclusiveCallbackGroup(),
-            clock=steady_clock, autostart=False)
-        self._publish_again_at(settings.publish_rate)
-        self._follow_joints()
-        add_services(node, self._current_lookup)
-        node.create_service(
-            Trigger, '~/reload', self._answer_to_reload, qos_profile=SERVICE_QOS,
-            callback_group=self._changes)
-        if settings.allow_set_pose:
-            node.create_service(
-                SetPose, '~/set_pose', self._answer_to_set_pose, qos_profile=SERVICE_QOS,
-                callback_group=self._changes)
-        parameter_services.start(self._set_parameters)
-        node.create_timer(PERIOD_S, self._diagnostics.publish, clock=steady_clock)
-        PollingThread(
-            node, self._changes,
-            lambda: self._settings.watch and self._follower.is_due(), self._check_files)
+        # Simulated time may stand still, so these follow the time of the computer.
+        self._publishing_again = Periodic(
+            self._publish_again, _period_from_rate(settings.publish_rate))
+        self._publishing_diagnostics = Periodic(self._diagnostics.publish, PERIOD_S)
+        self._looking = Periodic(self._look_at_files, LOOKING_PERIOD_S)
+        self._publish(loaded, self._frames_from_scene(loaded, settings))
+        result_from_executor(node, lambda: self._start_services(parameter_services))
         self._report_success()
         # Imported here because it is slow to import, and everything else is more urgent.
         from sdf_pose_bridge.ros.visuals import VisualPublisher
         # With the quality of service that it has in robot_state_publisher.
         self._robot_description = SwitchedPublisher(node, Topic('robot_description', String))
         self._publish_robot_description()
-        self._visuals = VisualPublisher(node, self._reader, loaded)
+        self._visuals = VisualPublisher(node, reader, loaded)
         self._follow_switches()
+        loader.between = self._do_what_is_due
+
+    # What the executor does
+
+    def _start_services(self, parameter_services: ParameterServices) -> None:
+        add_services(self._node, self._current_lookup)
+        # Like those for parameters, they are taken from the middleware one after the other.
+        group = parameter_services.group
+        self._node.create_service(
+            Trigger, '~/reload', self._answer_to_reload, qos_profile=SERVICE_QOS,
+            callback_group=group)
+        if self._settings.allow_set_pose:
+            self._node.create_service(
+                SetPose, '~/set_pose', self._answer_to_set_pose, qos_profile=SERVICE_QOS,
+                callback_group=group)
+        parameter_services.start(
+            lambda parameters: self._loader.run(lambda: self._set_parameters(parameters)))
+
+    async def _answer_to_reload(
+        self, _request: Trigger.Request, response: Trigger.Response,
+    ) -> Trigger.Response:
+        return await self._loader.run(lambda: self._reload_as_requested(response))
+
+    async def _answer_to_set_pose(
+        self, request: SetPose.Request, _response: SetPose.Response,
+    ) -> SetPose.Response:
+        return await self._loader.run(lambda: self._set_pose(request))
+
+    async def _current_lookup(self) -> PoseLookup:
+        if self._joint_states is None:
+            return self._loaded.lookup
+        lookup: PoseLookup = await self._joint_states.current_lookup()
+        return lookup
+
+    # Requests, one after the other
+
+    def _reload_as_requested(self, response: Trigger.Response) -> Trigger.Response:
+        failure = self._reload()
+        self._report_failure(self._follower.unreported(failure))
+        response.success = not failure
+        response.message = '; '.join(failure) or line_about_frames(self._loaded)
+        return response
+
+    def _set_pose(self, request: SetPose.Request) -> SetPose.Response:
+        """Write a measured pose, and respond when it is published."""
+        if self._joint_states is not None:
+            self._joint_states.wait()
+        try:
+            response: SetPose.Response = set_pose(request, self._loaded, self._result)
+            if not request.dry_run:
+                loaded = self._load(self._settings)
+                frames = self._frames_from_scene(loaded, self._settings)
+        except Exception as error:  # noqa: BLE001 - the client must be answered
+            return SetPose.Response(message='; '.join(self._lines_from_error(error)))
+        if not request.dry_run:
+            self._replace(loaded, frames)
+        return response
+
+    def _set_parameters(self, parameters: Sequence[Parameter]) -> SetParametersResult:
+        """Set parameters if all settings, and the file that they name, are valid."""
+        frames = None
+        try:
+            settings = changed_settings(self._settings, parameters)
+            loaded = self._loaded
+            if settings.needs_load_after(self._settings) or any(
+                    parameter.name in ('sdf_file', 'robot_description')
+                    for parameter in parameters):
+                loaded = self._load(settings)
+            check_number_of_topics(settings.joint_states_topics, loaded.joint_positions)
+            if loaded is not self._loaded or (
+                    settings.pose_topics, settings.publish_transforms) != (
+                        self._settings.pose_topics, self._settings.publish_transforms):
+                frames = self._frames_from_scene(loaded, settings)
+            result: SetParametersResult = result_from_executor(
+                self._node, lambda: self._node.set_parameters_atomically(parameters))
+        except Exception as error:  # noqa: BLE001 - the client must be answered
+            reason = '; '.join(self._lines_from_error(error))
+            result = SetParametersResult(successful=False, reason=reason)
+        if result.successful:
+            self._apply(settings, loaded, frames)
+        elif frames is not None:
+            self._frames.destroy_other_publishers()
+        return result
+
+    # What is done between requests
+
+    def _do_what_is_due(self) -> float:
+        """Return the longest time in s until this has to be called again."""
+        return min(
+            self._publish_what_is_due(), self._looking.call_if_due(), self._visuals.go_on())
+
+    def _publish_what_is_due(self) -> float:
+        """Do the same as far as it is done during a load, too."""
+        return min(
+            self._publishing_again.call_if_due(), self._publishing_diagnostics.call_if_due())
+
+    def _look_at_files(self) -> None:
+        if not self._settings.watch:
+            return
+        # Waiting for a disk or a core must not lengthen the period.
+        begin = time.thread_time()
+        has_to_read = self._follower.has_to_read()
+        self._looking.period_s = max(
+            LOOKING_PERIOD_S, (time.thread_time() - begin) / LARGEST_SHARE)
+        self._report_failure(
+            self._follower.failure_of_period(self._reload() if has_to_read else None))
+
+    def _publish_again(self) -> None:
+        begin = time.perf_counter()
+        self._frames.publish_fixed_again()
+        seconds = time.perf_counter() - begin
+        if seconds * self._settings.publish_rate > 1.0:
+            self._logger.warning(
+                f'publish_rate {self._settings.publish_rate} Hz is not reached: to publish '
+                f'everything takes {1e3 * seconds:.0f} ms', throttle_duration_sec=60.0)
 
     # Loading
 
-    def _load(self, settings: Settings) -> Future:
-        return self._worker.run(lambda: self._reader.loaded_scene(settings.load_request))
+    def _reload(self) -> list[str]:
+        """Read the files again; return the errors, after which nothing has changed."""
+        try:
+            loaded = self._load(self._settings)
+            frames = self._frames_from_scene(loaded, self._settings)
+        except Exception as error:  # noqa: BLE001 - includes defects
+            lines = self._lines_from_error(error)
+            self._follower.retry_after(error)
+            self._follower.follow_also(files_behind_error(error, self._settings.load_request))
+            return lines
+        self._replace(loaded, frames)
+        return []
 
-    async def _show(self, loaded: LoadedScene) -> None:
-        """Publish a scene on the topics of the settings, unless they would be too many."""
-        check_number_of_topics(self._settings.joint_states_topics, loaded.joint_positions)
-        frames = await frames_from_scene(
-            self._node, self._worker, loaded, self._settings, self._frames)
-        async with self._publishing:
-            before, self._loaded, self._frames = self._loaded, loaded, frames
-            self._follow_joints()
-            # From then on, nothing publishes the frames before.
-            await self._process_messages()
-            if loaded is not before:
-                frames.publish_tf_static()
-            await frames.publish_topics()
-            if self._joint_states is not None:
-                self._joint_states.publish_topics()
-        if loaded is not before:
-            await self._worker.run(lambda: self._follower.follow(loaded))
-            for line in await self._worker.run(
-                    lambda: lines_about_lost_frames(before.tree, loaded.tree)):
-                self._logger.warning(line)
-            self._report_success()
-            self._publish_robot_description()
-            self._visuals.replace(loaded)
+    def _load(self, settings: Settings) -> LoadedScene:
+        loaded: LoadedScene = self._result(
+            settings.load_request, loaded_scene, settings.load_request)
+        return loaded
+
+    def _result(
+        self, request: LoadRequest, function: Callable[..., Any], *arguments: object,
+    ) -> Any:
+        """Call a function that reads files in another process, and do meanwhile what is due."""
+        with self._reader.calling(request, function, *arguments) as call:
+            while not call.has_ended(min(LONGEST_WAIT_S, self._publish_what_is_due())):
+                if self._loader.has_to_end:
+                    raise SystemExit
+            return call.result()
+
+    def _frames_from_scene(self, loaded: LoadedScene, settings: Settings) -> PublishedFrames:
+        """Prepare whatever can fail."""
+        check_number_of_topics(settings.joint_states_topics, loaded.joint_positions)
+        return frames_from_scene(self._node, loaded, settings, self._frames)
+
+    def _lines_from_error(self, error: Exception) -> list[str]:
+        if isinstance(error, MemoryError):
+            raise error
+        if isinstance(error, SdfError | SettingsError | AddressError):
+            return lines_from_error(error)
+        self._logger.error(f'internal error:\n{traceback.format_exc()}')
+        return [f'internal error, see the log of the node: {error!r}']
+
+    # Publishing
+
+    def _publish(self, loaded: LoadedScene, frames: PublishedFrames) -> None:
+        """Publish prepared frames on all topics instead of those before."""
+        is_new = loaded is not self._loaded
+        self._loaded, self._frames = loaded, frames
+        self._follow_joints()
+        # From then on, nothing publishes the frames before.
+        if is_new:
+            frames.publish_tf_static()
+        frames.destroy_other_publishers()
+        frames.publish_topics()
+        if self._joint_states is not None:
+            self._joint_states.publish_topics()
 
     def _follow_joints(self) -> None:
         """Subscribe to joint states if moving frames follow them."""
         settings, moving, current = self._settings, self._frames.moving, self._joint_states
         if moving is None:
             if current is not None:
-                current.end()
-                self._joint_states = None
+                result_from_executor(self._node, self._end_joint_states)
             return
         topics = joint_state_topics_from_patterns(
             settings.joint_states_topics, self._loaded.tree.world, moving.positions.models,
@@ -156,18 +296,42 @@ class SdfPoseBridge:
         # Imported here because it takes 8 ms, and joints do not move by default.
         from sdf_pose_bridge.ros.joint_states import JointStates
         if current is not None:
-            current.follow(moving, topics, settings)
+            current.follow(moving, self._loaded.lookup, topics, settings)
         else:
-            self._joint_states = JointStates(self._node, moving, topics, settings)
+            self._joint_states = JointStates(
+                self._node, moving, self._loaded.lookup, topics, settings)
 
-    async def _current_lookup(self) -> PoseLookup:
-        await self._process_messages()
-        return self._loaded.lookup
+    def _end_joint_states(self) -> None:
+        # The executor does this, so that no look-up waits for the thread after its end.
+        assert self._joint_states is not None
+        self._joint_states.end()
+        self._joint_states = None
 
-    async def _process_messages(self) -> None:
-        """Wait until the messages of joint states so far are processed."""
-        if self._joint_states is not None:
-            await self._joint_states.catch_up()
+    def _replace(self, loaded: LoadedScene, frames: PublishedFrames) -> None:
+        """Publish prepared frames, and whatever else belongs to the scene if that is new."""
+        before = self._loaded
+        self._publish(loaded, frames)
+        if loaded is not before:
+            self._follower.follow(loaded)
+            for line in lines_about_lost_frames(before.tree, loaded.tree):
+                self._logger.warning(line)
+            self._report_success()
+            self._publish_robot_description()
+            self._visuals.replace(loaded)
+
+    def _apply(
+        self, settings: Settings, loaded: LoadedScene, frames: PublishedFrames | None,
+    ) -> None:
+        before, self._settings = self._settings, settings
+        if settings.publish_rate != before.publish_rate:
+            self._publishing_again.restart(_period_from_rate(settings.publish_rate))
+        if frames is not None:
+            self._replace(loaded, frames)
+        else:
+            self._follow_joints()
+        self._follow_switches()
+        if settings.publish_robot_description != before.publish_robot_description:
+            self._publish_robot_description()
 
     def _follow_switches(self) -> None:
         self._diagnostics.switch(on=self._settings.publish_diagnostics)
@@ -177,6 +341,8 @@ class SdfPoseBridge:
         text = self._loaded.description if self._settings.publish_robot_description else ''
         self._robot_description.switch(on=bool(text))
         self._robot_description.publish(String(data=text))
+
+    # Reporting
 
     def _report_success(self) -> None:
         loaded = self._loaded
@@ -193,26 +359,6 @@ class SdfPoseBridge:
                 self._has_told_of_joints = True
         self._diagnostics.update(loaded)
 
-    async def _reload(self) -> list[str]:
-        """Read the files again; return the errors, after which nothing has changed."""
-        try:
-            await self._show(await self._load(self._settings))
-        except Exception as error:  # noqa: BLE001 - includes defects
-            files = files_behind_error(error, self._settings.load_request)
-            self._follower.retry_after(error)
-            with contextlib.suppress(MemoryError):  # it is read again then
-                await self._worker.run(lambda: self._follower.follow_also(files))
-            return self._lines_from_error(error)
-        return []
-
-    def _lines_from_error(self, error: Exception) -> list[str]:
-        if isinstance(error, SdfError | SettingsError | AddressError):
-            return lines_from_error(error)
-        if isinstance(error, MemoryError):
-            return ['there is not enough memory to read the file']
-        self._logger.error(f'internal error:\n{traceback.format_exc()}')
-        return [f'internal error, see the log of the node: {error!r}']
-
     def _report_failure(self, lines: list[str]) -> None:
         if lines:
             source = self._settings.load_request.source
@@ -221,104 +367,6 @@ class SdfPoseBridge:
                 self._logger.error(line)
             self._diagnostics.update(self._loaded, lines)
 
-    async def _answer_to_reload(
-        self, _request: Trigger.Request, response: Trigger.Response,
-    ) -> Trigger.Response:
-        failure = await self._reload()
-        self._report_failure(self._follower.unreported(failure))
-        response.success = not failure
-        response.message = '; '.join(failure) or line_about_frames(self._loaded)
-        return response
 
-    async def _answer_to_set_pose(
-        self, request: SetPose.Request, response: SetPose.Response,
-    ) -> SetPose.Response:
-        """Write a measured pose, and respond when it is published."""
-        await self._process_messages()
-        loaded = self._loaded
-        try:
-            answer: SetPose.Response = await self._worker.run(
-                lambda: set_pose(request, loaded, self._reader))
-            if not request.dry_run:
-                await self._show(await self._load(self._settings))
-        except Exception as error:  # noqa: BLE001 - the client must be answered
-            response.message = '; '.join(self._lines_from_error(error))
-            return response
-        return answer
-
-    async def _check_files(self) -> None:
-        with contextlib.suppress(MemoryError):  # they are checked again after a period
-            failure = None
-            if await self._worker.run(self._follower.has_to_read):
-                failure = await self._reload()
-            self._report_failure(self._follower.failure_of_period(failure))
-
-    # Changes of parameters
-
-    async def _set_parameters(self, parameters: Sequence[Parameter]) -> SetParametersResult:
-        """Set parameters if all settings, and the file that they name, are valid."""
-        try:
-            settings = changed_settings(self._settings, parameters)
-            loaded = self._loaded
-            if settings.needs_load_after(self._settings) or any(
-                    parameter.name in ('sdf_file', 'robot_description')
-                    for parameter in parameters):
-                loaded = await self._load(settings)
-            check_number_of_topics(settings.joint_states_topics, loaded.joint_positions)
-            result = self._node.set_parameters_atomically(parameters)
-            if result.successful:
-                await self._apply(settings, loaded)
-        except Exception as error:  # noqa: BLE001 - the client must be answered
-            reason = '; '.join(self._lines_from_error(error))
-            return SetParametersResult(successful=False, reason=reason)
-        return result
-
-    async def _apply(self, settings: Settings, loaded: LoadedScene) -> None:
-        before, self._settings = self._settings, settings
-        self._publish_again_at(settings.publish_rate)
-        if loaded is not self._loaded or (
-                settings.pose_topics, settings.publish_transforms) != (
-                    before.pose_topics, before.publish_transforms):
-            await self._show(loaded)
-        self._follow_joints()
-        self._follow_switches()
-        if settings.publish_robot_description != before.publish_robot_description:
-            self._publish_robot_description()
-
-    # Publishing again
-
-    def _publish_again_at(self, rate: float) -> None:
-        self._again_timer.cancel()
-        if rate:
-            self._again_timer.timer_period_ns = round(NANOSECONDS / rate)
-            self._again_timer.reset()
-
-    async def _publish_again(self) -> None:
-        async with self._publishing:
-            begin = time.perf_counter()
-            await self._frames.publish_fixed_again()
-        seconds = time.perf_counter() - begin
-        if seconds * self._settings.publish_rate > 1.0:
-            # Missed periods are left out.
-            self._again_timer.reset()
-            self._logger.warning(
-                f'publish_rate {self._settings.publish_rate} Hz is not reached: to publish '
-                f'everything takes {1e3 * seconds:.0f} ms', throttle_duration_sec=60.0)
-
-
-async def start_bridge(
-    node: Node, frames: PublishedFrames, settings: Settings, loaded: LoadedScene,
-    reader: SceneReader, parameter_services: ParameterServices,
-) -> None:
-    """
-    Publish a scene on all other topics, and start the services.
-
-    :param node: the node, with declared parameters and an executor.
-    :param frames: the frames of the scene, which are published on ``/tf_static``.
-    :param reader: reads files.
-    :param parameter_services: the parameter services of the node.
-    """
-    worker = Worker(node)
-    frames = await frames_from_scene(node, worker, loaded, settings, frames)
-    await frames.publish_topics()
-    SdfPoseBridge(node, frames, settings, loaded, reader, parameter_services, worker)
+def _period_from_rate(rate: float) -> float:
+    return 1.0 / rate if rate else math.inf

@@ -10,7 +10,6 @@ fails in many ways, and do not interrupt the reading of a file.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-import contextlib
 from contextlib import contextmanager
 import gc
 import os
@@ -25,10 +24,11 @@ from rclpy.exceptions import InvalidParameterTypeException
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
-from rclpy.task import Task
 from rclpy.utilities import remove_ros_args
 
 from sdf_pose_bridge.errors import AddressError, SdfError
+from sdf_pose_bridge.ros.background import Worker
+from sdf_pose_bridge.ros.ending import end_at_failures_of_threads, end_without_memory
 from sdf_pose_bridge.ros.given_parameters import (
     ParameterServices,
     settings_from_node,
@@ -39,7 +39,7 @@ from sdf_pose_bridge.ros.middleware import use_profile
 from sdf_pose_bridge.ros.parameters import SettingsError, Value
 from sdf_pose_bridge.ros.published_frames import PublishedFrames, TF_STATIC
 from sdf_pose_bridge.ros.publishers import Publishers
-from sdf_pose_bridge.ros.scene_reader import SceneReader
+from sdf_pose_bridge.ros.scene_reader import loaded_scene, SceneReader
 from sdf_pose_bridge.ros.setting_rules import AUTO_KINDS
 from sdf_pose_bridge.ros.topic_names import check_number_of_topics
 import sdf_pose_bridge_interfaces  # noqa: F401 - if it is missing, say so before anything else
@@ -48,6 +48,9 @@ STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 LONGEST_STOP_S = 10.0
 """Time in s for the current work to end after a signal, before the process is ended."""
+
+_ENDING_PERIOD_S = 0.02
+"""Time in s between two looks whether it has ended."""
 
 
 class Program(NamedTuple):
@@ -108,6 +111,7 @@ def run(args: Sequence[str], program_name: str, reader: SceneReader) -> int:
     # From now on, a signal stays pending until it is unblocked or waited for, and a second one is
     # ignored. Threads that are started later inherit this.
     signal.pthread_sigmask(signal.SIG_BLOCK, STOP_SIGNALS)
+    end_at_failures_of_threads()
     program = PROGRAMS[program_name]
     sentence_about_profile = use_profile(os.environ)
     try:
@@ -147,14 +151,12 @@ def _exit_code_from_node(
     _log_warnings(node, warnings_about_unknown_parameters(node, program.known_elsewhere))
     try:
         settings = settings_from_node(node, program.defaults, file)
-        publishers = Publishers(node)
-        with contextlib.ExitStack() as stack:
-            def meanwhile() -> None:
-                publishers.opened(TF_STATIC)
-                stack.enter_context(_interrupted_by_signals())
-
-            loaded = reader.loaded_scene(settings.load_request, meanwhile)
-            check_number_of_topics(settings.joint_states_topics, loaded.joint_positions)
+        publishers, request = Publishers(node), settings.load_request
+        with reader.calling(request, loaded_scene, request) as call:
+            publishers.opened(TF_STATIC)
+            with _interrupted_by_signals():
+                loaded = call.result()
+        check_number_of_topics(settings.joint_states_topics, loaded.joint_positions)
     except (SdfError, SettingsError, AddressError) as error:
         _log_warnings(node, [
             warning for warning in (error.warnings if isinstance(error, SdfError) else ())
@@ -165,18 +167,19 @@ def _exit_code_from_node(
     frames = PublishedFrames(publishers, loaded.tree, loaded.joint_positions, {})
     frames.publish_tf_static()
     # Imported here because it is slow to import, and listeners wait for /tf_static.
-    from sdf_pose_bridge.ros.node import start_bridge
+    from sdf_pose_bridge.ros.node import SdfPoseBridge
     # Modules and the first scene are not garbage. Searching them would stop all threads.
     gc.freeze()
     gc.enable()
     executor = SingleThreadedExecutor()
     executor.add_node(node)
-    start = executor.create_task(
-        start_bridge, node, frames, settings, loaded, reader, parameter_services)
+    loader = Worker(node, 'loader')
+    start = loader.run(lambda: SdfPoseBridge(
+        node, loader, frames, settings, loaded, reader, parameter_services))
     if program is ROBOT_STATE_PUBLISHER:
         # Scripts wait for this line of the package robot_state_publisher.
         start.add_done_callback(lambda _: node.get_logger().info('Robot initialized'))
-    _spin_until_signal(executor, node, start)
+    _spin_until_signal(executor, node, loader)
     executor.shutdown()
     return 0
 
@@ -197,30 +200,38 @@ def _interrupted_by_signals() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_BLOCK, STOP_SIGNALS)
 
 
-def _spin_until_signal(executor: SingleThreadedExecutor, node: Node, start: Task) -> None:
+def _spin_until_signal(executor: SingleThreadedExecutor, node: Node, loader: Worker) -> None:
     has_to_stop, has_stopped = threading.Event(), threading.Event()
 
     def wait_for_signal() -> None:
         signal.sigwait(STOP_SIGNALS)
         has_to_stop.set()
-        # Without memory, the executor cannot continue.
-        with contextlib.suppress(MemoryError):
-            executor.create_task(has_to_stop.set)
+        loader.end()
+        executor.create_task(lambda: None)
         if not has_stopped.wait(LONGEST_STOP_S):
             os._exit(1)
 
     threading.Thread(target=wait_for_signal, name='signals', daemon=True).start()
     while not has_to_stop.is_set():
-        try:
-            executor.spin_once()
-        except Exception as error:
-            if start.exception() is not None:
-                raise
-            # A defect, or a message that rclpy rejects: a negative time on /clock.
-            node.get_logger().error(
-                f'internal error in a callback: {error}\n{traceback.format_exc()}',
-                throttle_duration_sec=60.0)
+        _spin_once(executor, node)
+    # It may wait for the executor.
+    while loader.is_alive:
+        _spin_once(executor, node, _ENDING_PERIOD_S)
     has_stopped.set()
+
+
+def _spin_once(
+    executor: SingleThreadedExecutor, node: Node, longest_s: float | None = None,
+) -> None:
+    try:
+        executor.spin_once(longest_s)
+    except MemoryError:
+        end_without_memory()
+    except Exception as error:  # noqa: BLE001
+        # A defect, or a message that rclpy rejects: a negative time on /clock.
+        node.get_logger().error(
+            f'internal error in a callback: {error}\n{traceback.format_exc()}',
+            throttle_duration_sec=60.0)
 
 
 def _log_warnings(node: Node, warnings: Sequence[object]) -> None:

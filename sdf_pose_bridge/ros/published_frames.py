@@ -10,23 +10,21 @@ once, moving frames repeatedly, by the thread that follows joint states.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-import contextlib
 
 from geometry_msgs.msg import PoseStamped, TransformStamped
 import numpy as np
 from numpy.typing import NDArray
-from rclpy.exceptions import InvalidHandle
 from rclpy.logging import LoggingSeverity
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge.geometry.chains import Indices
-from sdf_pose_bridge.ros.background import Worker
+from sdf_pose_bridge.ros.background import result_from_executor
 from sdf_pose_bridge.ros.cdr import StampedRecords
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.publishers import Publishers, Topic
-from sdf_pose_bridge.ros.topic_names import pose_topics_from_patterns, PoseTopics
+from sdf_pose_bridge.ros.topic_names import pose_topics_from_patterns
 from sdf_pose_bridge.tf.joint_motion import MovingFrames, NO_DOF
 from sdf_pose_bridge.tf.joint_positions import JointPositions, NEVER
 from sdf_pose_bridge.tf.loaded_scene import LoadedScene
@@ -37,36 +35,36 @@ TF = Topic('/tf', TFMessage, depth=100, is_latched=False, is_overridable=True)
 """With the quality of service that it has in tf2_ros."""
 
 
-async def frames_from_scene(
-    node: Node, worker: Worker, loaded: LoadedScene, settings: Settings, before: PublishedFrames,
+def frames_from_scene(
+    node: Node, loaded: LoadedScene, settings: Settings, before: PublishedFrames,
 ) -> PublishedFrames:
     """
-    Make the messages and choose the topics of the frames of a scene; nothing is published.
+    Make the messages and the publishers of the frames of a scene; nothing is published.
 
-    :param worker: makes the messages; those of many frames take long.
+    :param node: the node, the executor of which runs in another thread.
     :param before: the frames that these ones replace.
     """
     name, logger, publishers = (
         node.get_fully_qualified_name(), node.get_logger(), before.publishers)
-    if loaded.tree.moving is not None:
-        publishers.opened(TF)
-
-    def frames_and_topics() -> tuple[PublishedFrames, PoseTopics]:
-        # The first search for a name makes the index of all names.
-        loaded.scene.has('')
-        topics = pose_topics_from_patterns(loaded.tree.frame_ids, settings.pose_topics, name)
-        frames = PublishedFrames(
-            publishers, loaded.tree, loaded.joint_positions, topics.names, before,
-            has_transforms=settings.publish_transforms)
-        return frames, topics
-
-    made: tuple[PublishedFrames, PoseTopics] = await worker.run(frames_and_topics)
-    frames, topics = made
+    # The first search for a name makes the index of all names.
+    loaded.scene.has('')
+    topics = pose_topics_from_patterns(loaded.tree.frame_ids, settings.pose_topics, name)
     if topics.warning:
         logger.warning(topics.warning)
     if logger.is_enabled_for(LoggingSeverity.DEBUG):
         for frame_id, name in topics.names.items():
             logger.debug(f'frame "{frame_id}" has the topic ~/poses/{name}')
+    try:
+        if loaded.tree.moving is not None:
+            # It declares parameters.
+            result_from_executor(node, lambda: publishers.opened(TF))
+        frames = PublishedFrames(
+            publishers, loaded.tree, loaded.joint_positions, topics.names, before,
+            has_transforms=settings.publish_transforms)
+        frames.open_topics()
+    except Exception:
+        before.destroy_other_publishers()
+        raise
     return frames
 
 
@@ -118,22 +116,26 @@ class PublishedFrames:
         self._transforms.set_stamps(self.stamp_ns)
         self._tf_static.publish(self._transforms.tf_message())
 
-    async def publish_topics(self) -> None:
-        """Publish all fixed frames on all other topics, and make those of moving frames."""
-        # All publishers of poses may take a second.
-        await self.publishers.replace(dict.fromkeys(self._topics))
-        await self._publish_one_by_one()
+    def open_topics(self) -> None:
+        """Make the publishers that are missing."""
+        for topic in self._topics:
+            self.publishers.opened(topic)
 
-    async def publish_fixed_again(self) -> None:
+    def destroy_other_publishers(self) -> None:
+        """Destroy the publishers of all other topics, so that no listener gets old messages."""
+        self.publishers.destroy_others(dict.fromkeys(self._topics))
+
+    def publish_topics(self) -> None:
+        """Publish all fixed frames on all other topics."""
+        for records, topics in self._fixed:
+            records.set_stamps(self.stamp_ns)
+            self.publishers.send(topics, records.messages())
+
+    def publish_fixed_again(self) -> None:
         """Publish all fixed frames on all topics with a new stamp."""
         self.stamp_ns = self.publishers.now_ns()
         self.publish_tf_static()
-        await self._publish_one_by_one()
-
-    async def _publish_one_by_one(self) -> None:
-        for records, topics in self._fixed:
-            records.set_stamps(self.stamp_ns)
-            await self.publishers.send(topics, records.messages())
+        self.publish_topics()
 
 
 class PublishedMovingFrames:
@@ -232,25 +234,23 @@ class PublishedMovingFrames:
 
         :param only_listeners: whether to leave out topics without subscribers.
         """
-        # The executor destroys topics of frames that are no longer published.
-        with contextlib.suppress(InvalidHandle):
-            publishers = self._wanted([self.transforms_topic], only_listeners=only_listeners)
-            if any(publishers):
-                self._transforms.set_poses(self.frames.transforms(self.positions.values))
-                self._transforms.set_stamps(self._stamps(self.frames.last_dofs))
-                messages = self._transforms.messages()
-                # They may wait to be published on /tf.
-                self._transforms.set_stamps(self._stamps_ns)
-                _publish(publishers * len(messages), messages, self.has_transform)
-            publishers = self._wanted(self._posed_topics, only_listeners=only_listeners)
-            if any(publishers):
-                frames, rows = self.frames, self._posed_rows
-                self._poses.set_poses(frames.poses(self.positions.values)[rows])
-                self._poses.set_stamps(
-                    self._stamps(frames.posed_last_dofs[rows], frames.last_dof_of_pose_frame))
-                _publish(
-                    publishers, self._poses.messages(),
-                    frames.has_pose(self.positions.is_known)[rows])
+        publishers = self._wanted([self.transforms_topic], only_listeners=only_listeners)
+        if any(publishers):
+            self._transforms.set_poses(self.frames.transforms(self.positions.values))
+            self._transforms.set_stamps(self._stamps(self.frames.last_dofs))
+            messages = self._transforms.messages()
+            # They may wait to be published on /tf.
+            self._transforms.set_stamps(self._stamps_ns)
+            _publish(publishers * len(messages), messages, self.has_transform)
+        publishers = self._wanted(self._posed_topics, only_listeners=only_listeners)
+        if any(publishers):
+            frames, rows = self.frames, self._posed_rows
+            self._poses.set_poses(frames.poses(self.positions.values)[rows])
+            self._poses.set_stamps(
+                self._stamps(frames.posed_last_dofs[rows], frames.last_dof_of_pose_frame))
+            _publish(
+                publishers, self._poses.messages(),
+                frames.has_pose(self.positions.is_known)[rows])
 
     def _wanted(
         self, topics: Sequence[Topic], *, only_listeners: bool,

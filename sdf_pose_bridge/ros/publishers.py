@@ -4,20 +4,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
-from rclpy.event_handler import PublisherEventCallbacks, QoSPublisherMatchedInfo
+from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
-
-from sdf_pose_bridge.ros.background import run_other_callbacks
-
-# Number of messages or publishers, made in a few milliseconds, before other callbacks run.
-MESSAGES_AT_ONCE = 500
-PUBLISHERS_AT_ONCE = 40
 
 MOST_PUBLISHERS = 1010
 """The recipes for networks in docs/ros_interface.md were measured with so many: the topics of the
@@ -62,82 +56,57 @@ class Publishers:
             publisher = self._publishers[topic] = new_publisher(self._node, topic)
         return publisher
 
-    async def replace(self, topics: Collection[Topic]) -> None:
+    def destroy_others(self, topics: Collection[Topic]) -> None:
         """
-        Make the publishers of these topics, and destroy all others.
+        Destroy all publishers but those of these topics.
 
-        Other callbacks of the node run meanwhile. If there are more than :data:`MOST_PUBLISHERS`,
-        a warning is logged once.
+        If there are more than :data:`MOST_PUBLISHERS`, a warning is logged once.
         """
-        unwanted = self._publishers.keys() - topics
-        missing = [topic for topic in topics if topic not in self._publishers]
-        for number, topic in enumerate([*unwanted, *missing]):
-            if number % PUBLISHERS_AT_ONCE == 0:
-                await run_other_callbacks(self._node)
-            if topic in unwanted:
-                self._node.destroy_publisher(self._publishers.pop(topic))
-            else:
-                self.opened(topic)
+        for topic in self._publishers.keys() - topics:
+            self._node.destroy_publisher(self._publishers.pop(topic))
         if len(self._publishers) > MOST_PUBLISHERS:
             self._node.get_logger().warning(
                 f'{len(self._publishers)} publishers are more than {MOST_PUBLISHERS}, the most '
                 'that was measured over networks; listeners may wait long for their first '
                 'message: choose fewer topics with pose_topics', once=True)
 
-    async def send(self, topics: Sequence[Topic], messages: Sequence[bytes]) -> None:
+    def send(self, topics: Sequence[Topic], messages: Sequence[bytes]) -> None:
         """
-        Publish many messages. Other callbacks of the node run meanwhile.
+        Publish many messages.
 
         :param topics: the topic of each message.
         :param messages: serialized messages.
         """
-        await run_other_callbacks(self._node)
-        pairs = zip(topics, messages, strict=True)
-        for number, (topic, message) in enumerate(pairs, start=1):
+        for topic, message in zip(topics, messages, strict=True):
             self._publishers[topic].publish(message)
-            if number % MESSAGES_AT_ONCE == 0:
-                await run_other_callbacks(self._node)
 
 
-def new_publisher(
-    node: Node, topic: Topic, matched: Callable[[QoSPublisherMatchedInfo], None] | None = None,
-) -> Publisher:
-    """
-    Make a reliable publisher.
-
-    :param matched: called when a listener comes or goes.
-    """
+def new_publisher(node: Node, topic: Topic) -> Publisher:
+    """Make a reliable publisher; any thread can do this."""
     quality = QoSProfile(
         history=HistoryPolicy.KEEP_LAST, depth=topic.depth, reliability=ReliabilityPolicy.RELIABLE,
         durability=DurabilityPolicy.TRANSIENT_LOCAL if topic.is_latched
         else DurabilityPolicy.VOLATILE)
-    # The default callbacks only report incompatible listeners, and the executor waits for each
-    # callback, a thousand of them in a large scene.
+    # The default callbacks only report incompatible listeners, and the executor would wait for
+    # each of them, a thousand in a large scene, while another thread destroys its publisher.
     return node.create_publisher(
         topic.message_type, topic.name, quality,
         qos_overriding_options=QoSOverridingOptions.with_default_policies()
         if topic.is_overridable else None,
-        event_callbacks=PublisherEventCallbacks(matched=matched, use_default_callbacks=False))
+        event_callbacks=PublisherEventCallbacks(use_default_callbacks=False))
 
 
 class SwitchedPublisher:
-    """
-    The publisher of a topic that exists while it is switched on.
+    """The publisher of a topic that exists while it is switched on."""
 
-    :param matched: called when a listener comes or goes.
-    """
-
-    def __init__(
-        self, node: Node, topic: Topic,
-        matched: Callable[[QoSPublisherMatchedInfo], None] | None = None,
-    ) -> None:
-        self._node, self._topic, self._matched = node, topic, matched
+    def __init__(self, node: Node, topic: Topic) -> None:
+        self._node, self._topic = node, topic
         self._publisher: Publisher | None = None
 
     def switch(self, *, on: bool) -> None:
         """Make the publisher or destroy it. Then nobody gets an old message."""
         if on and self._publisher is None:
-            self._publisher = new_publisher(self._node, self._topic, self._matched)
+            self._publisher = new_publisher(self._node, self._topic)
         elif not on and self._publisher is not None:
             self._node.destroy_publisher(self._publisher)
             self._publisher = None

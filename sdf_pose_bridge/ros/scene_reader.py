@@ -1,14 +1,15 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Read files in processes with limits, for the node."""
+"""Read and write files in processes with limits, for the node."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import TypeVar
 
 from sdf_pose_bridge.errors import FileReadError, LimitError, PassingReadError, Place
-from sdf_pose_bridge.limited_process import LimitedProcess, ProcessEndedError
+from sdf_pose_bridge.limited_process import Call, LimitedProcess, ProcessEndedError
 from sdf_pose_bridge.process_limits import FOR_FILES, LimitExceededError
 from sdf_pose_bridge.tf.loaded_scene import LoadedScene, LoadRequest
 
@@ -21,7 +22,8 @@ def _prepare() -> None:
     import sdf_pose_bridge.tf.loading  # noqa: F401
 
 
-def _loaded_scene(request: LoadRequest) -> LoadedScene:
+def loaded_scene(request: LoadRequest) -> LoadedScene:
+    """Do the same as ``tf.loading.loaded_scene_from_request``, which the node need not import."""
     from sdf_pose_bridge.tf.loading import loaded_scene_from_request
     return loaded_scene_from_request(request)
 
@@ -31,43 +33,32 @@ class SceneReader(LimitedProcess):
     Reads files, each in a process of its own that is forked from this one.
 
     It must be made by the main thread before ROS is imported, which starts threads. All methods
-    are thread-safe and wait for the process. They raise the exceptions of the functions that they
-    call there, and
-
-    :raises LimitError: if reading the file exceeds the limits.
-    :raises FileReadError: if the process ends during the call, or cannot be started.
-    :raises MemoryError: if there is no memory for the result.
+    are thread-safe.
     """
 
     def __init__(self) -> None:
         super().__init__(_prepare)
 
-    def loaded_scene(
-        self, request: LoadRequest, meanwhile: Callable[[], None] | None = None,
-    ) -> LoadedScene:
-        """
-        Read a file or a text, as :func:`sdf_pose_bridge.tf.loading.loaded_scene_from_request`.
-
-        :param meanwhile: a function to call here while it is read.
-        """
-        return self.result(request, _loaded_scene, request, meanwhile=meanwhile)
-
-    def result(
+    @contextmanager
+    def calling(
         self, request: LoadRequest, function: Callable[..., _Result], *arguments: object,
-        meanwhile: Callable[[], None] | None = None,
-    ) -> _Result:
+    ) -> Iterator[Call[_Result]]:
         """
-        Call a function that reads the files of a request.
+        Call a function that reads or writes the files of a request; it ends with the block.
 
         :param function: a function of a module; its arguments and result can be pickled.
-        :param meanwhile: a function to call here while the other one runs.
+        :return: a context manager with the call, which raises, also from the block,
+        :raises LimitError: if reading the file exceeds the limits.
+        :raises FileReadError: if the process ends during the call, or cannot be started, or there
+            is no memory for its answer.
         """
         place = Place(request.source)
         try:
-            return self.call(FOR_FILES, function, *arguments, meanwhile=meanwhile)
+            with self.start(FOR_FILES, function, *arguments) as call:
+                yield call
         except LimitExceededError as error:
             msg = f'the file needs {error} to be read'
             raise LimitError(msg, place) from None
         except ProcessEndedError as error:
-            error_class = PassingReadError if error.may_pass else FileReadError
+            error_class = PassingReadError if error.is_temporary else FileReadError
             raise error_class(str(error), place) from error

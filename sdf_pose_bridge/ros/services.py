@@ -8,10 +8,10 @@ import array
 from collections.abc import Awaitable, Callable, Iterable
 from functools import partial
 import traceback
-from typing import Any, TypeAlias
+from typing import Any, TYPE_CHECKING, TypeAlias
 
 import numpy as np
-from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.clock import Clock
 from rclpy.node import Node
 from rclpy.qos import qos_profile_parameters
@@ -28,10 +28,12 @@ from sdf_pose_bridge.geometry.formats import converted_poses, POSE_FORMATS, Pose
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import RotationError
 from sdf_pose_bridge.ros.background import Worker
-from sdf_pose_bridge.ros.scene_reader import SceneReader
 from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadedScene
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge_interfaces.srv import ConvertPoses, ConvertRotation, LookupPose, SetPose
+
+if TYPE_CHECKING:
+    from sdf_pose_bridge.tf.loading import FrameChange
 
 Answer: TypeAlias = Callable[[Any, Any], None]
 """Fills the response to a request."""
@@ -45,6 +47,9 @@ SERVICE_QOS = qos_profile_parameters
 MOST_NUMBERS = 1_000_000
 """Largest number of values in a call of ``~/convert_poses``."""
 
+FEW_NUMBERS = 1000
+"""Largest number of values that the executor converts itself, in less than a millisecond."""
+
 
 def add_services(node: Node, lookup: Callable[[], Awaitable[PoseLookup]]) -> None:
     """
@@ -52,19 +57,20 @@ def add_services(node: Node, lookup: Callable[[], Awaitable[PoseLookup]]) -> Non
 
     :param lookup: returns the current look-up of poses.
     """
-    logger, clock, group = node.get_logger(), node.get_clock(), ReentrantCallbackGroup()
+    logger, clock = node.get_logger(), node.get_clock()
     # It answers requests that may take long, one after the other.
-    worker = Worker(node)
+    worker = Worker(node, 'conversions')
 
     def answered(answer: Answer, request: Any, response: Any) -> Any:
         return response_from_answer(answer, request, response, logger.error)
 
     async def answered_in_thread(answer: Answer, request: Any, response: Any) -> Any:
-        try:
-            return await worker.run(lambda: answered(answer, request, response))
-        except MemoryError:
-            response.message = 'out of memory'
-            return response
+        return await worker.run(lambda: answered(answer, request, response))
+
+    async def convert_poses(request: ConvertPoses.Request, response: ConvertPoses.Response) -> Any:
+        if len(request.values) <= FEW_NUMBERS:
+            return answered(answer_to_convert_poses, request, response)
+        return await answered_in_thread(answer_to_convert_poses, request, response)
 
     async def lookup_pose(request: LookupPose.Request, response: LookupPose.Response) -> Any:
         current = await lookup()
@@ -77,11 +83,14 @@ def add_services(node: Node, lookup: Callable[[], Awaitable[PoseLookup]]) -> Non
 
     for service_type, name, callback in (
         (ConvertRotation, 'convert_rotation', partial(answered, answer_to_convert_rotation)),
-        (ConvertPoses, 'convert_poses', partial(answered_in_thread, answer_to_convert_poses)),
+        (ConvertPoses, 'convert_poses', convert_poses),
         (LookupPose, 'lookup_pose', lookup_pose),
     ):
+        # In groups of their own, they are taken from the middleware one after the other, so that
+        # it keeps the others, and no more of them than the quality of service says.
         node.create_service(
-            service_type, f'~/{name}', callback, qos_profile=SERVICE_QOS, callback_group=group)
+            service_type, f'~/{name}', callback, qos_profile=SERVICE_QOS,
+            callback_group=MutuallyExclusiveCallbackGroup())
 
 
 def answer_to_convert_rotation(
@@ -121,13 +130,14 @@ def answer_to_lookup_pose(
 
 
 def set_pose(
-    request: SetPose.Request, loaded: LoadedScene, reader: SceneReader,
+    request: SetPose.Request, loaded: LoadedScene, call: Callable[..., FrameChange],
 ) -> SetPose.Response:
     """
     Write the measured pose of a frame into its file, unless it is a dry run.
 
     :param loaded: the published scene.
-    :param reader: finds the change of the file.
+    :param call: calls a function in another process, as ``SceneReader.calling``, and returns its
+        result.
     :return: the response with the change; the changed file is valid and can be published.
     :raises SdfError: if the request is not valid, no change of a single pose gives this pose, or
         the file cannot be written.
@@ -136,15 +146,13 @@ def set_pose(
         msg = 'the pose is in the parameter robot_description, not in a file'
         raise PoseNotSetError(msg, Place(str(loaded.path)))
     # Imported here because it takes 7 ms, and few nodes write files.
-    from sdf_pose_bridge.tf.loading import frame_change_from_request
-    change = reader.result(
-        loaded.request, frame_change_from_request, loaded.request,
-        fingerprint_of_scene(loaded.scene), request.frame, _pose_from_request(request, loaded),
-        request.pose.header.frame_id, loaded.joint_positions)
-    if not request.dry_run:
-        change.file.write()
+    from sdf_pose_bridge.tf.loading import write_frame_change
+    change = call(
+        loaded.request, write_frame_change, loaded.request, fingerprint_of_scene(loaded.scene),
+        request.frame, _pose_from_request(request, loaded), request.pose.header.frame_id,
+        loaded.joint_positions, request.dry_run)
     return SetPose.Response(
-        success=True, file=change.file.path, line=change.line, diff=change.diff,
+        success=True, file=change.path, line=change.line, diff=change.diff,
         moved_frames=list(change.moved_frames))
 
 
@@ -185,6 +193,8 @@ def response_from_answer(
         answer(request, response)
     except REFUSALS as error:
         response.message = error.message if isinstance(error, SdfError) else str(error)
+    except MemoryError:
+        raise
     except Exception as error:  # noqa: BLE001 - whatever it is, the client must be answered
         log_error(f'internal error in a service:\n{traceback.format_exc()}')
         response = type(response)()

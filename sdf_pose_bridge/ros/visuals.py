@@ -4,21 +4,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Generator
+import math
 
-from geometry_msgs.msg import Point, Quaternion, Vector3
-from geometry_msgs.msg import Pose as PoseMessage
 from rclpy.node import Node
-from std_msgs.msg import ColorRGBA, Header
-from visualization_msgs.msg import Marker, MarkerArray
+from visualization_msgs.msg import MarkerArray
 
 from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.ros.background import Worker
 from sdf_pose_bridge.ros.log_lines import lines_from_error, lines_from_warnings
 from sdf_pose_bridge.ros.publishers import SwitchedPublisher, Topic
 from sdf_pose_bridge.ros.scene_reader import SceneReader
+from sdf_pose_bridge.ros.visual_messages import serialized_markers_from_text
 from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadedScene
-from sdf_pose_bridge.tf.visual_markers import markers_from_text, VisualMarker
+
+WAITING_S = 0.02
+"""Time in s between two looks whether another process has made the markers."""
 
 
 class VisualPublisher:
@@ -32,13 +32,12 @@ class VisualPublisher:
     """
 
     def __init__(self, node: Node, reader: SceneReader, loaded: LoadedScene) -> None:
-        self._node = node
-        self._worker = Worker(node)
+        self._logger = node.get_logger()
         self._reader = reader
         self._loaded = loaded
         self._shown: LoadedScene | None = None
-        self._publisher = SwitchedPublisher(
-            node, Topic('~/visuals', MarkerArray), lambda _: self._publish_to_listeners())
+        self._publisher = SwitchedPublisher(node, Topic('~/visuals', MarkerArray))
+        self._work = self._publishing(loaded)
 
     def switch(self, *, on: bool) -> None:
         """Start or stop publishing."""
@@ -46,68 +45,41 @@ class VisualPublisher:
         self._shown = self._shown if on else None
 
     def replace(self, loaded: LoadedScene) -> None:
-        """Show another scene from now on."""
+        """Show another scene from now on; markers of the one before are no longer made."""
         self._loaded = loaded
-        self._publish_to_listeners()
+        self._work.close()
 
-    def _publish_to_listeners(self) -> None:
+    def go_on(self) -> float:
+        """Begin or go on if there is something to do; return the time in s until there may be."""
         if self._shown is not self._loaded and self._publisher.has_listeners():
             self._shown = self._loaded
-            self._node.executor.create_task(self._publish, self._loaded)
+            self._work = self._publishing(self._loaded)
+        elif self._shown is None:
+            return math.inf
+        return next(self._work, math.inf)
 
-    async def _publish(self, loaded: LoadedScene) -> None:
-        message, lines = await self._worker.run(
-            lambda: _message_and_warnings(loaded, self._reader))
-        if loaded is not self._loaded:
+    def _publishing(self, loaded: LoadedScene) -> Generator[float, None, None]:
+        """Publish the visuals of a scene; yield while another process makes them."""
+        try:
+            with self._reader.calling(
+                    loaded.request, serialized_markers_from_text, loaded.text, loaded.path,
+                    loaded.request, fingerprint_of_scene(loaded.scene),
+                    loaded.tree.root_frame) as call:
+                while not call.has_ended(0.0):
+                    yield WAITING_S
+                found = call.result()
+        except SdfError as error:
+            self._warn(lines_from_error(error))
             return
-        for line in lines:
-            self._node.get_logger().warning(line)
-        if message is not None:
-            self._publisher.publish(message)
+        if found is None:
+            self._warn([
+                f'a file that {loaded.path} includes has changed since it was read'])
+            return
+        message, warnings = found
+        for line in lines_from_warnings(warnings):
+            self._logger.warning(line)
+        self._publisher.publish(message)
 
-
-def _message_and_warnings(
-    loaded: LoadedScene, reader: SceneReader,
-) -> tuple[MarkerArray | None, list[str]]:
-    try:
-        found = reader.result(
-            loaded.request, markers_from_text, loaded.text, loaded.path, loaded.request,
-            fingerprint_of_scene(loaded.scene))
-    except (SdfError, MemoryError) as error:
-        return None, [f'~/visuals is not updated: {line}' for line in lines_from_error(error)]
-    if found is None:
-        return None, [
-            (f'~/visuals is not updated: a file that {loaded.path} includes has changed since it '
-             'was read')]
-    markers, warnings = found
-    return message_from_markers(markers, loaded.tree.root_frame), lines_from_warnings(warnings)
-
-
-def message_from_markers(markers: Iterable[VisualMarker], root_frame: str) -> MarkerArray:
-    """
-    Make the message of all markers.
-
-    :param root_frame: frame id of the root.
-    :return: the message; it first deletes all markers of earlier messages. Stamps are zero, so
-        that RViz uses the latest transforms.
-    """
-    delete_all = Marker(header=Header(frame_id=root_frame), action=Marker.DELETEALL)
-    return MarkerArray(markers=[
-        delete_all,
-        *(_marker_message(marker, number) for number, marker in enumerate(markers, start=1))])
-
-
-def _marker_message(marker: VisualMarker, number: int) -> Marker:
-    x, y, z, qx, qy, qz, qw = marker.pose
-    # No color means the materials of the mesh itself.
-    red, green, blue, alpha = marker.rgba or (0.0, 0.0, 0.0, 0.0)
-    return Marker(
-        header=Header(frame_id=marker.frame_id), frame_locked=True,
-        ns=marker.namespace, id=number, action=Marker.ADD, type=getattr(Marker, marker.type),
-        pose=PoseMessage(
-            position=Point(x=x, y=y, z=z), orientation=Quaternion(x=qx, y=qy, z=qz, w=qw)),
-        scale=Vector3(**dict(zip('xyz', marker.scale, strict=True))),
-        color=ColorRGBA(r=red, g=green, b=blue, a=alpha),
-        points=[Point(x=x, y=y, z=z) for x, y, z in marker.points.tolist()],
-        mesh_resource=marker.mesh_resource,
-        mesh_use_embedded_materials=marker.rgba is None)
+    def _warn(self, reasons: list[str]) -> None:
+        for reason in reasons:
+            self._logger.warning(f'~/visuals is not updated: {reason}')

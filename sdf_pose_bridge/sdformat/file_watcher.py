@@ -51,19 +51,10 @@ class FileWatcher:
         """Watch more files and directories (their entries), until the next :meth:`watch`."""
         self._signatures = _signatures(set(paths).difference(self._signatures)) | self._signatures
 
-    def has_changed(self) -> bool:
-        """
-        Compare the files, remember their current state, and return whether any has changed.
-
-        Other threads use :meth:`differs`.
-        """
+    def notices_change(self) -> bool:
+        """Compare the files, remember their current state, and return whether any has changed."""
         before, self._signatures = self._signatures, _signatures(self._signatures)
         return before != self._signatures
-
-    def differs(self) -> bool:
-        """Return the same as :meth:`has_changed`, and remember nothing."""
-        signatures = self._signatures
-        return _signatures(signatures) != signatures
 
 
 def _signatures(paths: Iterable[str]) -> dict[str, Signature]:

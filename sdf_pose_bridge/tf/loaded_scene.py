@@ -85,7 +85,7 @@ def fingerprint_of_scene(scene: Scene) -> bytes:
         scene.poses.tobytes(), *(name.encode() for name in scene.names)])).digest()
 
 
-def may_pass(error: Exception) -> bool:
+def is_temporary(error: Exception) -> bool:
     """Return whether reading the same files again may succeed after an error of a load."""
-    errors = error.errors if isinstance(error, SdfError) else (error,)
-    return any(isinstance(each, MemoryError | PassingReadError) for each in errors)
+    return isinstance(error, SdfError) and any(
+        isinstance(each, PassingReadError) for each in error.errors)

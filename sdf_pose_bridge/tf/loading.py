@@ -25,7 +25,6 @@ from sdf_pose_bridge.scene.comparison import names_of_moved
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.pose_setting import pose_change
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.file_change import FileChange
 from sdf_pose_bridge.sdformat.include.uris import (
     model_file_from_directory,
     ModelFile,
@@ -48,7 +47,7 @@ from sdf_pose_bridge.tf.urdf_text import urdf_from_scene
 class FrameChange(NamedTuple):
     """A change of one pose in a file."""
 
-    file: FileChange
+    path: str
     diff: str
     line: int
     """The line of the pose, or of the element in which it is inserted."""
@@ -101,19 +100,20 @@ def loaded_scene_from_request(
     )
 
 
-def frame_change_from_request(
+def write_frame_change(
     request: LoadRequest, fingerprint: bytes, frame: str, asked: Pose, reference: str,
-    positions: JointPositions | None,
+    positions: JointPositions | None, dry_run: bool,  # noqa: FBT001 - called in another process
 ) -> FrameChange:
     """
-    Find the change of a file that moves a frame to a measured pose. Nothing is written.
+    Find and write the change of a file that moves a frame to a measured pose.
 
     :param request: the request of the published scene, which has this fingerprint.
     :param asked: the measured pose of the frame.
     :param reference: the name of the frame in which it was measured; empty for the root frame.
     :param positions: the positions of the joints at that time; None if they do not move.
+    :param dry_run: whether to write nothing.
     :return: the change; the changed file is valid and can be published.
-    :raises SdfError: if no change of a single pose gives this pose.
+    :raises SdfError: if no change of a single pose gives this pose, or the file cannot be written.
     """
     loaded = loaded_scene_from_request(request)
     scene = loaded.scene
@@ -133,7 +133,9 @@ def frame_change_from_request(
     change = pose_change(scene, element, asked, measured, scene_with)
     moved = set(names_of_moved(scene, change.scene))
     elements = loaded.tree.elements.tolist()
-    return FrameChange(change.file, change.file.diff, change.line, tuple(
+    if not dry_run:
+        change.file.write()
+    return FrameChange(change.file.path, change.file.diff, change.line, tuple(
         frame_id for frame_id, other in zip(loaded.tree.frame_ids, elements, strict=True)
         if other not in (-1, element) and scene.names[other] in moved))
 

@@ -43,13 +43,16 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
+from sdf_pose_bridge.ros.background import Worker
 from sdf_pose_bridge.ros.process import _spin_until_signal
 
 rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
 node = Node('idle')
 executor = SingleThreadedExecutor()
 executor.add_node(node)
-_spin_until_signal(executor, node, executor.create_task(print, 'spins', flush=True))
+loader = Worker(node, 'loader')
+loader.run(lambda: print('spins', flush=True))
+_spin_until_signal(executor, node, loader)
 """
 """A node that spins as the bridge does, and has no timers."""
 

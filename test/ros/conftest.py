@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fixtures that run callbacks of real nodes in this process."""
 
+from concurrent.futures import ThreadPoolExecutor
+
 import pytest
 
 
@@ -39,6 +41,18 @@ def finish():
         assert task.done()
         return task.result()
     return run
+
+
+@pytest.fixture
+def beside():
+    """Calls a function in a thread beside an executor; ``beside(executor, function, ...)``."""
+    def call(executor, function, *arguments):
+        with ThreadPoolExecutor(1) as threads:
+            future = threads.submit(function, *arguments)
+            while not future.done():
+                executor.spin_once(timeout_sec=0.01)
+            return future.result()
+    return call
 
 
 @pytest.fixture(scope='session')

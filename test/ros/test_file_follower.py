@@ -54,10 +54,8 @@ def test_a_failure_is_reported_once_the_file_no_longer_changes(follower, file, r
     assert reported() == []
     file.write_text(LONGER_HALF, encoding='utf-8')
     assert reported() == [], 'as it has changed again'
-    assert follower.is_due()
     (line,) = reported()
     assert f'{file}:2: ' in line
-    assert not follower.is_due()
     assert reported() == [], 'as it was'
 
 
@@ -74,7 +72,6 @@ def test_a_failure_that_vanishes_is_not_reported(follower, file, reported):
     file.write_text(GOOD, encoding='utf-8')
     assert reported() == []
     assert reported() == []
-    assert not follower.is_due()
 
 
 def test_a_failure_is_reported_again_after_a_success(file, reported):
@@ -89,27 +86,25 @@ def test_a_failure_is_reported_again_after_a_success(file, reported):
 def test_a_failure_of_a_requested_reading_is_reported_at_once(follower):
     assert follower.unreported(['broken']) == ['broken']
     assert follower.unreported(['broken']) == []
-    assert not follower.is_due()
+    assert follower.failure_of_period(None) == []
 
 
 def test_a_file_behind_an_error_is_followed(follower, tmp_path):
     path = tmp_path / 'included.sdf'
     follower.follow_also([str(path)])
-    assert not follower.is_due()
+    assert not follower.has_to_read()
     path.write_text(GOOD, encoding='utf-8')
-    assert follower.is_due()
     assert follower.has_to_read()
     assert not follower.has_to_read()
 
 
 @pytest.mark.parametrize(('error', 'is_retried'), [
-    (PassingReadError('busy', Place('a.sdf')), True), (MemoryError(), True),
+    (PassingReadError('busy', Place('a.sdf')), True),
     (SdfError('broken', Place('a.sdf')), False), (ZeroDivisionError(), False)])
 def test_files_are_read_again_soon_after_a_temporary_failure(
         follower, request_of_file, monkeypatch, error, is_retried):
     monkeypatch.setattr(file_follower, 'RETRY_PERIOD_S', 0.0)
     follower.retry_after(error)
-    assert follower.is_due() is is_retried
     assert follower.has_to_read() is is_retried
     follower.follow(loaded_scene_from_request(request_of_file))
-    assert not follower.is_due()
+    assert not follower.has_to_read()

@@ -22,7 +22,6 @@ from sdf_pose_bridge import load_text
 from sdf_pose_bridge.ros.joint_states import (
     INITIAL_PERIOD_S,
     JointStates,
-    SUBSCRIPTIONS_AT_ONCE,
     TOPICS_PERIOD_S,
 )
 from sdf_pose_bridge.ros.parameters import Settings
@@ -42,6 +41,7 @@ ARM = """<sdf version="1.11"><model name="arm">
   <axis><xyz>1 0 0</xyz></axis></joint>
 </model></sdf>"""
 TOPICS = JointStateTopics({'joint_states': ''})
+LOOKUP = object()
 TWO_ARMS = '<sdf version="1.11"><world name="w">{}{}</world></sdf>'.format(*(
     ARM.partition('">')[2].replace('</sdf>', '').replace('"arm"', f'"{name}"') for name in 'ab'))
 TWO_TOPICS = JointStateTopics({'a/j': 'a', 'b/j': 'b'})
@@ -71,8 +71,9 @@ def frames_by_stamp(message):
 class Following:
     """A node that follows joint states, and one that sends them and listens to ``/tf``."""
 
-    def __init__(self, node, listener, executor):
+    def __init__(self, node, listener, executor, beside):
         self.node, self.listener, self._executor = node, listener, executor
+        self._beside = beside
         self._publishers = Publishers(node)
         self._senders = {}
         self.states = self.frames = None
@@ -83,7 +84,11 @@ class Following:
 
     def start(self, text=ARM, unreported=UnreportedJoints.NONE, topics=TOPICS, rule=EACH):
         self.frames = self.frames_of(text, unreported)
-        self.states = JointStates(self.node, self.frames, topics, rule)
+        self.states = self._beside(
+            self._executor, JointStates, self.node, self.frames, LOOKUP, topics, rule)
+
+    def follow(self, frames, topics, rule):
+        self._beside(self._executor, self.states.follow, frames, LOOKUP, topics, rule)
 
     def frames_of(self, text, unreported=UnreportedJoints.NONE):
         scene = load_text(text)
@@ -136,9 +141,9 @@ class Following:
 
 
 @pytest.fixture
-def following(make_node, make_executor):
+def following(make_node, make_executor, beside):
     node, listener = make_node('bridge'), make_node('listener')
-    found = Following(node, listener, make_executor(node, listener))
+    found = Following(node, listener, make_executor(node, listener), beside)
     yield found
     found.states.end()
 
@@ -239,7 +244,7 @@ def test_other_frames_continue_with_the_positions_and_one_nanosecond_later(arm):
     arm.published((FIRST, {'turn': 0.5, 'lift': 0.5, 'grip': 0.5}))
     frames = arm.frames_of(ARM.replace('type="revolute"', 'type="fixed"'))
     arm.found.clear()
-    arm.states.follow(frames, TOPICS, EACH)
+    arm.follow(frames, TOPICS, EACH)
     assert dict(zip(frames.positions.names, frames.positions.values, strict=True)) == {
         'lift': 0.5, 'grip': 0.5}
     arm.wait(lambda: arm.found)
@@ -267,11 +272,9 @@ def test_what_was_created_for_it_is_destroyed_with_it(following):
     assert not following.states._thread.is_alive()
 
 
-def test_it_ends_with_the_node(make_node):
-    node = make_node('bridge')
-    following = Following(node, make_node('listener'), None)
+def test_it_ends_with_the_node(following):
     following.start()
-    node.destroy_node()
+    following.node.destroy_node()
     following.states._wake()
     following.states._thread.join(20.0)
     assert not following.states._thread.is_alive()
@@ -310,11 +313,11 @@ def test_positions_can_be_taken_before_the_end_of_a_period(slow_arm, finish):
     arm = slow_arm(0.001)
     arm.send(FIRST, {'turn': 0.5})
 
-    async def catch_up():
-        await arm.states.catch_up()
+    async def current_lookup():
+        return await arm.states.current_lookup()
 
     def is_taken():
-        finish(arm._executor, catch_up)
+        assert finish(arm._executor, current_lookup) is LOOKUP
         return 0.5 in arm.frames.positions.values
 
     arm.wait(is_taken)
@@ -366,7 +369,7 @@ def make_two_arms(following):
         following.start(TWO_ARMS, topics=TWO_TOPICS)
         for topic in ('/a/j', '/b/j'):
             following.connect(topic)
-        following.states.follow(following.frames, TWO_TOPICS, rule_of(frequency))
+        following.follow(following.frames, TWO_TOPICS, rule_of(frequency))
         following.spin(0.1)
         return following
     return start
@@ -427,7 +430,7 @@ def test_topics_come_and_go_with_the_frames(following):
     following.start(TWO_ARMS, topics=JointStateTopics({'joint_states': '', 'a/j': 'a'}))
 
     def subscribed(topics):
-        following.states.follow(following.frames, JointStateTopics(topics), EACH)
+        following.follow(following.frames, JointStateTopics(topics), EACH)
         return {each.topic_name: each for each in following.node.subscriptions}
 
     before = subscribed({'joint_states': '', 'a/j': 'a'})
@@ -451,18 +454,10 @@ def test_topics_that_are_followed_have_one_line(following, capfd, topics, line):
     assert log.count('following') == 1
 
 
-def test_many_topics_are_made_between_other_callbacks(following):
-    following.start(
-        TWO_ARMS, topics=JointStateTopics({f'a_{number}': 'a' for number in range(100)}))
-    subscriptions = following.node._subscriptions
-    assert len(subscriptions) == SUBSCRIPTIONS_AT_ONCE
-    following.wait(lambda: len(subscriptions) == 100)
-
-
 def test_a_topic_that_cannot_be_made_is_reported_and_the_others_are_made(following, capfd):
     topics = JointStateTopics({'{nowhere}/j': 'a', 'b/j': 'b'}, ('a warning',))
     following.start(TWO_ARMS, topics=topics)
-    following.states.follow(following.frames, topics, EACH)
+    following.follow(following.frames, topics, EACH)
     assert [each.topic_name for each in following.node.subscriptions] == ['/b/j']
     log = capfd.readouterr().err
     assert 'no subscription to {nowhere}/j: ' in log

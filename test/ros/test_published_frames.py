@@ -41,15 +41,17 @@ def tree_of_frames(*names):
 
 
 @pytest.fixture(name='publish')
-def make_publish(node, finish):
+def make_publish(node):
     """Publishes frames and pose topics; ``publish(names, topics)``."""
     publishers = Publishers(node)
 
     def publish(names, topics=()):
         frames = PublishedFrames(
             publishers, tree_of_frames(*names), None, {name: f'topic_{name}' for name in topics})
+        frames.open_topics()
         frames.publish_tf_static()
-        finish(node.executor, frames.publish_topics)
+        frames.destroy_other_publishers()
+        frames.publish_topics()
 
     return publish
 
@@ -119,13 +121,11 @@ def listen_to_poses(node, make_node):
     return found
 
 
-def publish_topics(node, frames):
+def publish_topics(frames):
     """Publish all frames on their topics; the moving ones as the thread of joint states does."""
-    async def publish():
-        await frames.publish_topics()
-        frames.moving.publish_topics(only_listeners=False)
-
-    node.executor.create_task(publish)
+    frames.open_topics()
+    frames.publish_topics()
+    frames.moving.publish_topics(only_listeners=False)
 
 
 def wait_until(node, condition, found):
@@ -140,10 +140,10 @@ def test_moving_frames_are_not_published_with_the_fixed_ones(node, poses):
         return sum(name == wanted for name, _ in poses)
 
     frames = frames_of_arm(Publishers(node))
-    publish_topics(node, frames)
+    publish_topics(frames)
     wait_until(node, lambda: count('upper') and count('base'), poses)
     for _ in range(2):
-        node.executor.create_task(frames.publish_fixed_again)
+        frames.publish_fixed_again()
     wait_until(node, lambda: count('base') == 3, poses)
     assert count('upper') == 1
 
@@ -154,7 +154,7 @@ def test_poses_have_the_stamps_of_the_tree_and_of_the_joints(node, poses):
     report_position(frames, 5_000_000_006)
     # The time of the node goes on before anything is published.
     assert frames.stamp_ns < publishers.now_ns()
-    publish_topics(node, frames)
+    publish_topics(frames)
     wait_until(node, lambda: {'upper', 'base'} <= dict(poses).keys(), poses)
     stamps = {name: (stamp.sec, stamp.nanosec) for name, stamp in poses}
     assert stamps == {'base': divmod(frames.stamp_ns, 10**9), 'upper': (5, 6)}
@@ -163,7 +163,7 @@ def test_poses_have_the_stamps_of_the_tree_and_of_the_joints(node, poses):
 def test_poses_in_a_frame_that_moves_have_the_stamp_of_its_joints(node, poses):
     frames = frames_of_arm(Publishers(node), pose_frame='upper')
     report_position(frames, 5_000_000_006)
-    publish_topics(node, frames)
+    publish_topics(frames)
     wait_until(node, lambda: 'base' in dict(poses), poses)
     stamp = dict(poses)['base']
     assert (stamp.sec, stamp.nanosec) == (5, 6)
@@ -174,7 +174,7 @@ def test_what_waits_for_tf_keeps_its_stamp_while_topics_are_published(node, pose
     report_position(frames, 5_000_000_006)
     node.create_subscription(TFMessage, '/tf', found.append, 10)
     rows = frames.moving.stamp(np.array([0]), 7_000_000_008)
-    publish_topics(node, frames)
+    publish_topics(frames)
     wait_until(node, lambda: 'upper' in dict(poses), poses)
     frames.moving.publish_tf(rows)
     wait_until(node, lambda: found, found)
@@ -186,7 +186,7 @@ def test_what_a_joint_without_a_position_moves_is_not_published(node, poses):
     publishers, transforms = Publishers(node), []
     node.create_subscription(TransformStamped, '/bridge/transforms', transforms.append, LATCHED)
     before = frames_of_arm(publishers, unreported=UnreportedJoints.NONE)
-    publish_topics(node, before)
+    publish_topics(before)
     wait_until(node, lambda: 'base' in dict(poses), poses)
     assert 'upper' not in dict(poses)
     report_position(before, 5_000_000_006)
@@ -197,19 +197,23 @@ def test_what_a_joint_without_a_position_moves_is_not_published(node, poses):
     assert [each.child_frame_id for each in transforms].count('upper') == 1
 
 
-def qualities(node):
-    """Publish the frames of an arm; return the quality of service of each topic."""
-    frames = frames_of_arm(Publishers(node))
-    states = JointStates(
-        node, frames.moving, JointStateTopics({'joint_states': ''}),
-        Settings({'publish_frequency': 0.0, 'ignore_timestamp': False}))
-    found = {
-        each.topic_name: each.qos_profile for each in [*node.publishers, *node.subscriptions]}
-    states.end()
-    return found
+@pytest.fixture(name='qualities')
+def publish_arm(make_executor, beside):
+    """Publishes the frames of an arm; returns the quality of service of each topic."""
+    def publish(node):
+        frames = frames_of_arm(Publishers(node))
+        states = beside(
+            make_executor(node), JointStates, node, frames.moving, None,
+            JointStateTopics({'joint_states': ''}),
+            Settings({'publish_frequency': 0.0, 'ignore_timestamp': False}))
+        found = {
+            each.topic_name: each.qos_profile for each in [*node.publishers, *node.subscriptions]}
+        states.end()
+        return found
+    return publish
 
 
-def test_policies_are_those_of_tf2_ros_and_declared(make_node):
+def test_policies_are_those_of_tf2_ros_and_declared(make_node, qualities):
     node = make_node('bridge')
     found = qualities(node)
     assert (found['/tf'].depth, found['/tf'].durability) == (100, DurabilityPolicy.VOLATILE)
@@ -221,7 +225,7 @@ def test_policies_are_those_of_tf2_ros_and_declared(make_node):
         'qos_overrides./joint_states.subscription.reliability').value == 'best_effort'
 
 
-def test_policies_are_overridden_under_the_remapped_name(make_node):
+def test_policies_are_overridden_under_the_remapped_name(make_node, qualities):
     node = make_node(
         'bridge', '-r', '/tf:=/r1/tf', '-p', 'qos_overrides./r1/tf.publisher.depth:=7',
         '-p', 'qos_overrides./tf_static.publisher.reliability:=best_effort',
@@ -233,11 +237,3 @@ def test_policies_are_overridden_under_the_remapped_name(make_node):
     assert found['/joint_states'].reliability is ReliabilityPolicy.RELIABLE
     assert found['/joint_states'].durability is DurabilityPolicy.TRANSIENT_LOCAL
     assert qos_profile_sensor_data.reliability is ReliabilityPolicy.BEST_EFFORT, 'for others'
-
-
-def test_many_topics_are_made_between_other_callbacks(publish, node):
-    calls = []
-    node.create_timer(0.0, lambda: calls.append(len(topics_of(node))))
-    names = [f'f{number}' for number in range(200)]
-    publish(names, names)
-    assert len(set(calls)) > 3

@@ -50,24 +50,30 @@ def test_messages_are_kept_as_the_topic_says(node, publishers):
     assert found['b'].durability is DurabilityPolicy.VOLATILE
 
 
-def test_topics_are_replaced(node, publishers, finish):
+def test_other_topics_are_destroyed(node, publishers):
     a, b, c = (Topic(f'~/{name}', PoseStamped) for name in 'abc')
     kept = publishers.opened(b)
     publishers.opened(a)
-    finish(node.executor, publishers.replace, [b, c])
+    publishers.opened(c)
+    publishers.destroy_others([b, c])
     assert topics_of(node) == {'/bridge/b', '/bridge/c'}
     assert publishers.existing(a) is None
     assert publishers.existing(b) is kept
 
 
 def test_more_publishers_than_were_measured_cause_one_warning(
-        node, publishers, finish, monkeypatch, capfd):
+        publishers, monkeypatch, capfd):
+    def replace(*topics):
+        for topic in topics:
+            publishers.opened(topic)
+        publishers.destroy_others(topics)
+
     monkeypatch.setattr(publishers_module, 'MOST_PUBLISHERS', 2)
     a, b, c, d = (Topic(f'~/{name}', PoseStamped) for name in 'abcd')
-    finish(node.executor, publishers.replace, [a, b])
+    replace(a, b)
     assert 'publishers are more than' not in capfd.readouterr().err
-    finish(node.executor, publishers.replace, [a, b, c])
-    finish(node.executor, publishers.replace, [a, b, d])
+    replace(a, b, c)
+    replace(a, b, d)
     assert capfd.readouterr().err.count('3 publishers are more than 2') == 1
 
 

@@ -16,8 +16,9 @@ from sdf_pose_bridge.errors import (
     SdfError,
 )
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadRequest, may_pass
-from sdf_pose_bridge.tf.loading import frame_change_from_request
+from sdf_pose_bridge.ros.scene_reader import loaded_scene
+from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, is_temporary, LoadRequest
+from sdf_pose_bridge.tf.loading import write_frame_change
 from sdf_pose_bridge.tf.visual_markers import markers_from_text
 
 CRASH = """import faulthandler, signal
@@ -40,41 +41,50 @@ def make_request(path):
 
 
 def change_of(loaded):
-    """Return the call that finds a change."""
+    """Return the call that writes a change."""
     return (
-        frame_change_from_request, loaded.request, fingerprint_of_scene(loaded.scene), 'l',
-        Pose(2.0), '', loaded.joint_positions)
+        write_frame_change, loaded.request, fingerprint_of_scene(loaded.scene), 'l',
+        Pose(2.0), '', loaded.joint_positions, False)
+
+
+def result(reader, request, function, *arguments):
+    with reader.calling(request, function, *arguments) as call:
+        return call.result()
+
+
+def load(reader, request):
+    return result(reader, request, loaded_scene, request)
 
 
 def test_a_scene_comes_from_another_process(reader, request_of_file, path):
-    loaded = reader.loaded_scene(request_of_file)
+    loaded = load(reader, request_of_file)
     assert loaded.path == path
     assert loaded.lookup.pose('l').pose == Pose(1.0)
-    assert reader.result(request_of_file, os.getpid) != os.getpid()
+    assert result(reader, request_of_file, os.getpid) != os.getpid()
 
 
-def test_markers_and_changes_come_from_it_too(reader, request_of_file):
-    loaded = reader.loaded_scene(request_of_file)
+def test_markers_come_from_it_and_changes_are_written_there(reader, request_of_file, path):
+    loaded = load(reader, request_of_file)
     fingerprint = fingerprint_of_scene(loaded.scene)
-    (marker,), _ = reader.result(
+    (marker,), _ = result(reader,
         loaded.request, markers_from_text, loaded.text, loaded.path, loaded.request, fingerprint)
     assert marker.type == 'CUBE'
-    change = reader.result(loaded.request, *change_of(loaded))
+    change = result(reader, loaded.request, *change_of(loaded))
     assert '+<sdf' in change.diff or '<pose>2 0 0 0 0 0' in change.diff
-    assert change.file.new_text.decode() == model_file(LINK).replace('1 0 0', '2 0 0')
+    assert path.read_text(encoding='utf-8') == model_file(LINK).replace('1 0 0', '2 0 0')
 
 
 def test_a_change_of_a_file_that_has_changed_is_refused(reader, request_of_file, path):
-    loaded = reader.loaded_scene(request_of_file)
+    loaded = load(reader, request_of_file)
     path.write_text(model_file(LINK.replace('1 0 0', '1 2 0')), encoding='utf-8')
     with pytest.raises(SdfError, match='the file has changed since it was read'):
-        reader.result(loaded.request, *change_of(loaded))
+        result(reader, loaded.request, *change_of(loaded))
 
 
 def test_all_errors_of_a_file_arrive(reader, path, request_of_file):
     path.write_text(world_file('<model name="m"/><frame name="f" attached_to="x"/>'))
     with pytest.raises(SdfError) as caught:
-        reader.loaded_scene(request_of_file)
+        load(reader, request_of_file)
     assert {error.code for error in caught.value.errors} == {
         'MODEL_WITHOUT_LINK', 'FRAME_ATTACHED_TO_INVALID'}
     assert {error.place.file for error in caught.value.errors} == {str(path)}
@@ -82,27 +92,27 @@ def test_all_errors_of_a_file_arrive(reader, path, request_of_file):
 
 def test_a_uri_without_a_file_is_an_error(reader):
     with pytest.raises(AddressError):
-        reader.loaded_scene(LoadRequest('package://no_such_package/cell.sdf', ''))
+        load(reader, LoadRequest('package://no_such_package/cell.sdf', ''))
 
 
 def test_a_file_that_needs_too_much_is_an_error(reader, request_of_file):
     with pytest.raises(LimitError) as caught:
-        reader.result(request_of_file, bytearray, 2_000_000_000)
+        result(reader, request_of_file, bytearray, 2_000_000_000)
     assert str(caught.value) == (
         f'{request_of_file.sdf_file}: LIMIT: the file needs more than 700 MB of memory to be read')
-    assert not may_pass(caught.value)
+    assert not is_temporary(caught.value)
 
 
 def test_a_process_that_is_killed_is_an_error_that_passes(reader, request_of_file):
     with pytest.raises(PassingReadError, match='has ended by signal 9') as caught:
-        reader.result(request_of_file, signal.raise_signal, signal.SIGKILL)
-    assert may_pass(caught.value)
-    assert reader.loaded_scene(request_of_file)
+        result(reader, request_of_file, signal.raise_signal, signal.SIGKILL)
+    assert is_temporary(caught.value)
+    assert load(reader, request_of_file)
 
 
 def test_a_process_that_crashes_is_an_error_that_stays(reader, request_of_file):
     with pytest.raises(FileReadError, match='has ended by signal 11') as caught:
-        reader.result(request_of_file, exec, CRASH, {})
-    assert not may_pass(caught.value)
+        result(reader, request_of_file, exec, CRASH, {})
+    assert not is_temporary(caught.value)
 
 

@@ -163,8 +163,13 @@ def make_path(tmp_path):
     return path
 
 
+def call(_request, function, *arguments):
+    """Call a function here, where the node calls it in another process."""
+    return function(*arguments)
+
+
 @pytest.fixture(name='ask')
-def make_ask(make_node, path, reader):
+def make_ask(make_node, path):
     settings = settings_from_node(make_node(
         'bridge', '-p', f'sdf_file:={path}', '-p', 'use_joint_states:=true'))
     loaded = loaded_scene_from_request(settings.load_request)
@@ -178,7 +183,7 @@ def make_ask(make_node, path, reader):
         position.x, position.y, position.z = xyz
         rotation.x, rotation.y, rotation.z, rotation.w = quat_xyzw
         return set_pose(
-            SetPose.Request(frame=frame, pose=pose, dry_run=dry_run), loaded, reader)
+            SetPose.Request(frame=frame, pose=pose, dry_run=dry_run), loaded, call)
 
     return ask
 
@@ -223,7 +228,7 @@ def test_a_wrong_request_is_refused(ask, path, frame, xyz, quat_xyzw, frame_id, 
     assert path.read_text(encoding='utf-8') == ARM
 
 
-def test_a_text_that_is_no_file_is_refused(reader):
+def test_a_text_that_is_no_file_is_refused():
     loaded = loaded_scene_from_request(LoadRequest('', ARM))
     with pytest.raises(SdfError, match='in the parameter robot_description, not in a file'):
-        set_pose(SetPose.Request(frame='mark'), loaded, reader)
+        set_pose(SetPose.Request(frame='mark'), loaded, call)

@@ -1,97 +1,27 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The message of all markers, as RViz needs it."""
+"""When ``~/visuals`` is made and published."""
 
+import math
 import time
 
-import numpy as np
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from rclpy.qos import DurabilityPolicy, QoSProfile
-from rclpy.serialization import deserialize_message, serialize_message
 from visualization_msgs.msg import Marker, MarkerArray
 
-from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.ros.visuals import message_from_markers, VisualPublisher
+from sdf_pose_bridge.ros.visuals import VisualPublisher
 from sdf_pose_bridge.tf.loaded_scene import LoadRequest
 from sdf_pose_bridge.tf.loading import loaded_scene_from_request
-from sdf_pose_bridge.tf.visual_markers import VisualMarker
 
 SDF = """<sdf version="1.10"><model name="m"><link name="l">
 <visual name="v"><geometry><{shape}/></geometry></visual></link></model></sdf>"""
-POSE = Pose(1.0, 2.0, 3.0, 0.0, 0.0, 1.0, 0.0)
-BLUE = (0.0, 0.0, 1.0, 0.5)
-TRIANGLE = np.array([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 2.0, 0.0)])
 
 
-def sent(*markers):
-    message = message_from_markers(markers, 'map')
-    return deserialize_message(serialize_message(message), MarkerArray).markers
-
-
-def marker(*values, rgba=BLUE, **others):
-    return VisualMarker(*values, rgba=rgba, frame_id='a/b/link', namespace='a::b', **others)
-
-
-def only_sent(*values, **others):
-    _, message = sent(marker(*values, **others))
-    return message
-
-
-def test_earlier_markers_are_deleted_first():
-    (first,) = sent()
-    assert (first.action, first.header.frame_id) == (Marker.DELETEALL, 'map')
-
-
-def test_marker_moves_with_its_frame():
-    message = only_sent('CUBE', (1.0, 2.0, 3.0), POSE)
-    assert (message.action, message.frame_locked) == (Marker.ADD, True)
-    assert (message.header.frame_id, message.ns) == ('a/b/link', 'a::b')
-    assert (message.header.stamp.sec, message.header.stamp.nanosec) == (0, 0)
-    assert (message.lifetime.sec, message.lifetime.nanosec) == (0, 0)
-    xyz, quat = message.pose.position, message.pose.orientation
-    assert (xyz.x, xyz.y, xyz.z, quat.x, quat.y, quat.z, quat.w) == POSE
-
-
-def test_each_marker_has_an_id_of_its_own():
-    messages = sent(*(marker('CUBE') for _ in range(3)))
-    assert len({each.id for each in messages}) == 4
-
-
-@pytest.mark.parametrize(('name', 'number'), [
-    ('CUBE', Marker.CUBE), ('SPHERE', Marker.SPHERE), ('CYLINDER', Marker.CYLINDER)])
-def test_shape_has_its_type_scale_and_color(name, number):
-    message = only_sent(name, (1.0, 2.0, 3.0))
-    assert message.type == number
-    assert (message.scale.x, message.scale.y, message.scale.z) == (1.0, 2.0, 3.0)
-    color = message.color
-    assert (color.r, color.g, color.b, color.a) == BLUE
-    assert not message.mesh_use_embedded_materials
-
-
-def test_triangles_are_their_corners():
-    message = only_sent('TRIANGLE_LIST', points=TRIANGLE)
-    assert message.type == Marker.TRIANGLE_LIST
-    assert [[each.x, each.y, each.z] for each in message.points] == TRIANGLE.tolist()
-
-
-def test_mesh_with_a_color():
-    message = only_sent('MESH_RESOURCE', mesh_resource='file:///a.stl')
-    assert (message.type, message.mesh_resource) == (Marker.MESH_RESOURCE, 'file:///a.stl')
-    assert (message.color.b, message.mesh_use_embedded_materials) == (1.0, False)
-
-
-def test_mesh_without_a_color_keeps_its_own():
-    message = only_sent('MESH_RESOURCE', mesh_resource='file:///a.dae', rgba=None)
-    color = message.color
-    assert (color.r, color.g, color.b, color.a) == (0.0, 0.0, 0.0, 0.0)
-    assert message.mesh_use_embedded_materials
-
-
-def test_shapes_that_were_read_too_late_are_not_shown(
-        make_node, make_executor, finish, reader, tmp_path):
+def test_shapes_of_the_scene_before_are_no_longer_read_and_not_shown(
+        make_node, make_executor, reader, tmp_path):
     node, listener = make_node('bridge'), make_node('listener')
     scenes = []
     for shape in ('box', 'sphere'):
@@ -99,20 +29,22 @@ def test_shapes_that_were_read_too_late_are_not_shown(
         path.write_text(SDF.format(shape=shape), encoding='utf-8')
         scenes.append(loaded_scene_from_request(LoadRequest(str(path), '')))
     old, new = scenes
-    executor = make_executor(node)
     visuals = VisualPublisher(node, reader, old)
     visuals.switch(on=True)
-    visuals.replace(new)
-    for loaded in (new, old):
-        finish(executor, visuals._publish, loaded)
-    # The node has no part in it, so that nothing is read again for the listener.
-    executor = make_executor(listener)
-    found = []
+    executor, found = make_executor(listener), []
     listener.create_subscription(
         MarkerArray, '/bridge/visuals', found.append,
-        QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL))
-    deadline = time.monotonic() + 20.0
-    while not found:
-        assert time.monotonic() < deadline
-        executor.spin_once(timeout_sec=0.1)
-    assert [each.type for each in found[0].markers[1:]] == [Marker.SPHERE]
+        QoSProfile(depth=9, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+
+    def wait_until(condition):
+        deadline = time.monotonic() + 20.0
+        while not condition():
+            assert time.monotonic() < deadline
+            executor.spin_once(timeout_sec=0.01)
+
+    wait_until(lambda: visuals.go_on() < math.inf)
+    visuals.replace(new)
+    wait_until(lambda: visuals.go_on() == math.inf and found)
+    assert [each.markers[1].type for each in found] == [Marker.SPHERE]
+    # There is nothing left to do.
+    assert visuals.go_on() == math.inf

@@ -69,32 +69,23 @@ CHANGES = pytest.mark.parametrize('change', [
 
 
 def test_without_a_change_there_is_nothing_to_notice(watcher):
-    assert not watcher.has_changed()
+    assert not watcher.notices_change()
 
 
 @CHANGES
 def test_a_change_is_noticed_once(watcher, path, change):
     change(path)
-    assert watcher.has_changed()
-    assert not watcher.has_changed()
-
-
-@CHANGES
-def test_a_look_from_another_thread_leaves_the_change_to_be_noticed(watcher, path, change):
-    assert not watcher.differs()
-    change(path)
-    assert watcher.differs()
-    assert watcher.has_changed()
-    assert not watcher.differs()
+    assert watcher.notices_change()
+    assert not watcher.notices_change()
 
 
 def test_a_file_that_appears_is_noticed(tmp_path):
     path = tmp_path / 'later.sdf'
     watcher = FileWatcher()
     watcher.watch([str(path)], LONG_AGO)
-    assert not watcher.has_changed()
+    assert not watcher.notices_change()
     path.touch()
-    assert watcher.has_changed()
+    assert watcher.notices_change()
 
 
 def test_a_link_that_points_elsewhere_is_noticed(tmp_path, path):
@@ -105,59 +96,59 @@ def test_a_link_that_points_elsewhere_is_noticed(tmp_path, path):
     watcher.watch([str(link)], LATER)
     link.unlink()
     link.symlink_to(other)
-    assert watcher.has_changed()
+    assert watcher.notices_change()
 
 
 def test_other_files_are_watched_no_longer(watcher, path):
     watcher.watch([], LATER)
     rewrite(path)
-    assert not watcher.has_changed()
+    assert not watcher.notices_change()
 
 
 def test_a_file_that_changed_while_it_was_read_counts_as_changed_once(path):
     watcher = FileWatcher()
     read_since_ns = path.stat().st_ctime_ns - 1
     watcher.watch([str(path)], read_since_ns)
-    assert watcher.has_changed()
+    assert watcher.notices_change()
     watcher.watch([str(path)], read_since_ns)
-    assert not watcher.has_changed()
+    assert not watcher.notices_change()
 
 
 def test_a_file_that_changed_in_the_same_tick_as_the_reading_began_counts_as_changed(path):
     watcher = FileWatcher()
     watcher.watch([str(path)], path.stat().st_ctime_ns + 1)
-    assert watcher.has_changed()
+    assert watcher.notices_change()
 
 
 def test_a_time_that_lies_ahead_does_not_make_a_file_change_for_ever(path):
     watcher = FileWatcher()
     for _ in range(2):
         watcher.watch([str(path)], LONG_AGO)
-        watcher.has_changed()
+        watcher.notices_change()
     watcher.watch([str(path)], LONG_AGO)
-    assert not watcher.has_changed()
+    assert not watcher.notices_change()
 
 
 def test_more_files_can_be_watched_until_the_next_choice(watcher, path, tmp_path):
     watcher.watch_also([str(tmp_path / 'models'), str(path)])
-    assert not watcher.has_changed()
+    assert not watcher.notices_change()
     (tmp_path / 'models').mkdir()
-    assert watcher.has_changed()
+    assert watcher.notices_change()
     (tmp_path / 'models' / 'box').mkdir()
-    assert watcher.has_changed()
+    assert watcher.notices_change()
     watcher.watch([str(path)], LATER)
     (tmp_path / 'models' / 'crate').mkdir()
-    assert not watcher.has_changed()
+    assert not watcher.notices_change()
 
 
 def test_to_watch_more_forgets_no_change(watcher, path):
     rewrite(path)
     watcher.watch_also([str(path)])
-    assert watcher.has_changed()
+    assert watcher.notices_change()
 
 
 @pytest.mark.parametrize('name', ['', '\0', 'a' * 5000, '\udcff'])
 def test_a_path_that_cannot_exist_is_a_file_that_is_not_there(name):
     watcher = FileWatcher()
     watcher.watch([name, f'{name}/x'], LONG_AGO)
-    assert not watcher.has_changed() or not name
+    assert not watcher.notices_change() or not name

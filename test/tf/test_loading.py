@@ -14,9 +14,9 @@ from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.tf.loaded_scene import DescriptionFormat, fingerprint_of_scene, LoadRequest
 from sdf_pose_bridge.tf.loading import (
-    frame_change_from_request,
     loaded_scene_from_request,
     unicode_text,
+    write_frame_change,
 )
 from sdf_pose_bridge.tf.tree import TfOptions
 
@@ -135,13 +135,15 @@ def make_change(tmp_path):
     def change(frame, pose, reference='', position=0.0, published=fingerprint):
         positions = loaded.joint_positions
         positions.update(positions.selection(['turn']), np.array([position]))
-        return frame_change_from_request(request, published, frame, pose, reference, positions)
+        write_frame_change(
+            request, published, frame, pose, reference, positions, dry_run=False)
+        return path.read_text(encoding='utf-8')
 
     return change
 
 
 def test_a_pose_is_taken_where_its_reference_has_moved_to(change):
-    text = change('mark', Pose(0.5), 'tool', np.pi / 2).file.new_text
+    text = change('mark', Pose(0.5), 'tool', np.pi / 2)
     np.testing.assert_allclose(
         load_text(text).pose('m::mark')[:3], (0.0, 1.5, 0.0), atol=1e-9)
 

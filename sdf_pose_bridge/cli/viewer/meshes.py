@@ -120,8 +120,6 @@ class MeshReader:
                 mesh = Mesh(reason=f'it needs {error} to be read')
             except ProcessEndedError as error:
                 mesh = Mesh(reason=str(error))
-            except MemoryError:
-                mesh = Mesh(reason='there is not enough memory to read it')
             self._kept_bytes += mesh.size
             if self._kept_bytes > MOST_BYTES_KEPT:
                 self._kept.clear()

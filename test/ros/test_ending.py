@@ -1,0 +1,53 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""How a process ends that cannot go on."""
+
+import subprocess
+import sys
+
+import pytest
+
+PROGRAM = """
+import sys, threading, time
+from sdf_pose_bridge.ros.ending import end_at_failures_of_threads, end_without_memory
+
+class Fails:
+    def __del__(self):
+        raise {error}
+
+def fail():
+    raise {error}
+
+end_at_failures_of_threads()
+{code}
+time.sleep({seconds})
+print('goes on')
+"""
+IN_THREAD = 'threading.Thread(target=fail).start()'
+NO_MEMORY = 'sdf_pose_bridge: there is not enough memory, so the node ends\n'
+
+
+def ended(code, error, seconds=30):
+    return subprocess.run(
+        [sys.executable, '-c', PROGRAM.format(code=code, error=error, seconds=seconds)],
+        capture_output=True, text=True, check=False, timeout=20)
+
+
+@pytest.mark.parametrize('code', [IN_THREAD, 'Fails()', 'end_without_memory()'])
+def test_without_memory_the_process_ends_with_one_line(code):
+    done = ended(code, 'MemoryError')
+    assert (done.returncode, done.stdout, done.stderr) == (1, '', NO_MEMORY)
+
+
+def test_a_thread_that_fails_ends_the_process_with_a_traceback():
+    done = ended(IN_THREAD, 'KeyError("why")')
+    assert done.returncode == 1
+    assert 'has failed, so the node ends\nTraceback' in done.stderr
+    assert "KeyError: 'why'" in done.stderr
+
+
+@pytest.mark.parametrize(('code', 'error'), [
+    (IN_THREAD, 'SystemExit'), ('Fails()', 'KeyError')])
+def test_other_ends_of_a_thread_and_defects_that_python_reports_end_nothing(code, error):
+    done = ended(code, error, 0.2)
+    assert (done.returncode, done.stdout) == (0, 'goes on\n')
