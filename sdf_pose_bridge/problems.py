@@ -147,7 +147,7 @@ class Problems:
         return f' ({", ".join(steps)})'
 
 
-def folded(problems: Iterable[_Problem]) -> list[tuple[_Problem, str]]:
+def by_message(problems: Iterable[_Problem]) -> list[tuple[_Problem, str]]:
     """
     Join the problems of one file that have the same message.
 

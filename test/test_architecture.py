@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Modules, tests and pages fit together as docs/architecture.md describes."""
 
+import ast
 from pathlib import Path
 import re
 
@@ -42,3 +43,21 @@ def test_files_that_a_page_names_exist(page):
         page.read_text(encoding='utf-8'))
     assert [name for name in named
             if not (PACKAGE / name).exists() and not (ROOT / name).exists()] == []
+
+
+def names_defined_in(path):
+    """Return the names of the classes, functions, constants and fields in a module."""
+    for node in ast.walk(ast.parse(path.read_text(encoding='utf-8'))):
+        if isinstance(node, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
+            yield node.name
+        elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            yield node.id
+
+
+def test_classes_functions_and_constants_that_the_page_on_architecture_names_exist():
+    text = (ROOT / 'docs/architecture.md').read_text(encoding='utf-8')
+    named = re.findall(r'`(?:[a-z_]+\.)?([A-Z]\w+|[a-z]+_\w+)`', text)
+    defined = {name for module in MODULES for name in names_defined_in(PACKAGE / module)}
+    assert 'Scene' in named
+    assert 'hint_from_names' in named
+    assert set(named) - defined == {'sdf_pose'}  # the program

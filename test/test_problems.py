@@ -6,7 +6,7 @@ import pytest
 
 from sdf_pose_bridge.errors import LoadError, ParsingError, Place
 from sdf_pose_bridge.problems import (
-    folded,
+    by_message,
     MOST_HINTS,
     MOST_PROBLEMS,
     Problems,
@@ -120,9 +120,9 @@ def test_error_and_warning_shorten_what_they_quote():
 def test_problems_of_a_file_with_one_message_are_joined(places, other_lines):
     parts = [place.split(':') for place in places]
     errors = [ParsingError('x', Place(path, int(line))) for path, line in parts]
-    assert [text for _, text in folded(errors)] == other_lines
+    assert [text for _, text in by_message(errors)] == other_lines
 
 
 def test_problems_with_other_messages_are_not_joined():
     errors = [ParsingError(message, PLACE) for message in 'xyx']
-    assert [error.message for error, _ in folded(errors)] == ['x', 'y']
+    assert [error.message for error, _ in by_message(errors)] == ['x', 'y']

@@ -21,7 +21,7 @@ from sdf_pose_bridge.errors import SdfError, SdfWarning, UriLookupError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
 from sdf_pose_bridge.names import printable, shortened
-from sdf_pose_bridge.problems import folded
+from sdf_pose_bridge.problems import by_message
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.tree import TfTree
@@ -61,7 +61,7 @@ def print_problems(
     # Earlier output comes first, also if both streams go to one place.
     sys.stdout.flush()
     shown = [each for each in warnings if each not in hidden]
-    for problem, other_lines in folded(in_order(errors, shown)):
+    for problem, other_lines in by_message(in_order(errors, shown)):
         is_error = isinstance(problem, SdfError)
         kind = '' if is_error or problem.code == 'WARNING' else 'WARNING: '
         place, message = printable(str(problem.place)), printable(problem.message)

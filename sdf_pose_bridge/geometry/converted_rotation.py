@@ -24,7 +24,7 @@ from sdf_pose_bridge.geometry.rotations import (
 )
 
 
-class Given(enum.IntEnum):
+class RotationForm(enum.IntEnum):
     """The given representation of a rotation; the constants of ConvertRotation.srv."""
 
     RPY = 0
@@ -48,8 +48,8 @@ def converted_rotation(
     """
     Return both representations of one rotation, as the service ConvertRotation does.
 
-    :param given: a value of :class:`Given`, which chooses one of the next two; the other one is
-        ignored.
+    :param given: a value of :class:`RotationForm`, which chooses one of the next two; the other
+        one is ignored.
     :param rpy: roll, pitch, yaw, of any size.
     :param quat_xyzw: x, y, z, w, of any norm but zero.
     :param degrees: True if the angles, given and returned, are in degrees.
@@ -58,19 +58,19 @@ def converted_rotation(
     :raises RotationError: an unknown value of ``given``, numbers that are not finite, or a
         quaternion of zeros.
     """
-    if given == Given.RPY:
+    if given == RotationForm.RPY:
         rpy_rad: Sequence[float] = rpy
         # Angles that are not finite are not changed: the error shows them as they are given.
         if degrees and all(map(math.isfinite, rpy)):
             rpy_rad = radians_from_degrees(np.array(rpy)).tolist()
         quat = quaternion_from_rpy(rpy_rad)
-    elif given == Given.QUATERNION:
+    elif given == RotationForm.QUATERNION:
         quat = canonical_quaternion(quat_xyzw)
     else:
-        known = ', '.join(f'{value.value} ({value.name})' for value in Given)
+        known = ', '.join(f'{value.value} ({value.name})' for value in RotationForm)
         msg = f'given is {given!r}, which is neither RPY nor quaternion; known are {known}'
         raise RotationError(msg)
-    if given == Given.RPY and are_canonical_angles(rpy, 180.0 if degrees else math.pi):
+    if given == RotationForm.RPY and are_canonical_angles(rpy, 180.0 if degrees else math.pi):
         roll, pitch, yaw = rpy
     else:
         roll, pitch, yaw = rpy_from_quaternion(quat)

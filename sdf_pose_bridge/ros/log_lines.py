@@ -12,7 +12,7 @@ import numpy as np
 
 from sdf_pose_bridge.errors import SdfError, UriLookupError
 from sdf_pose_bridge.names import printable, quoted_names
-from sdf_pose_bridge.problems import folded, MOST_PROBLEMS
+from sdf_pose_bridge.problems import by_message, MOST_PROBLEMS
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.frame_ids import FrameNames, FrameNaming
@@ -46,7 +46,7 @@ def lines_from_error(error: Exception) -> list[str]:
         hint = '; on_missing_include "skip" leaves it out'
         lines = [
             f'{each}{hint if isinstance(each, UriLookupError) else ""}{other_lines}'
-            for each, other_lines in folded(error.errors)]
+            for each, other_lines in by_message(error.errors)]
         return _first_lines(lines, 'error', '; "sdf_pose check" shows all of them')
     if isinstance(error, SettingsError):
         return _first_lines(error.sentences, 'error')

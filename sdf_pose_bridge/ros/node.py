@@ -22,7 +22,7 @@ from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
 from sdf_pose_bridge.errors import AddressError, SdfError
-from sdf_pose_bridge.problems import folded
+from sdf_pose_bridge.problems import by_message
 from sdf_pose_bridge.ros.background import Periodic, result_from_executor, Worker
 from sdf_pose_bridge.ros.diagnostics import Diagnostics, PERIOD_S
 from sdf_pose_bridge.ros.file_follower import FileFollower
@@ -347,7 +347,7 @@ class SdfPoseBridge:
     def _report_success(self) -> None:
         loaded = self._loaded
         for line in lines_from_warnings([
-                f'{each}{other_lines}' for each, other_lines in folded(loaded.warnings)]):
+                f'{each}{other_lines}' for each, other_lines in by_message(loaded.warnings)]):
             self._logger.warning(line)
         for line in lines_about_scene(loaded):
             self._logger.info(line)

@@ -17,6 +17,7 @@ from sdf_pose_bridge.scene.resolution import poses_in_references, scene_from_gra
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.documents import Document, document_from_file
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
+from sdf_pose_bridge.sdformat.include.expansion import IncludeExpansion
 from sdf_pose_bridge.sdformat.include.merge import ModelByItself
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS, Limits, MissingInclude
@@ -119,14 +120,10 @@ def _scene(
     document: Document, sources: Sources, resource_paths: Iterable[str | os.PathLike[str]],
     on_missing_include: MissingInclude, *, shapes: bool,
 ) -> Scene:
-    if next(document.root.iter('include'), None) is not None:
-        # Many files have no includes and do not need this import.
-        from sdf_pose_bridge.sdformat.include.expansion import IncludeExpansion
-        expansion = IncludeExpansion(
-            resource_finder(resource_paths), sources,
-            skips_missing=on_missing_include is MissingInclude.SKIP,
-            model_by_itself=lambda root: _model_by_itself(root, sources))
-        expansion.expand(document)
+    IncludeExpansion(
+        resource_finder(resource_paths), sources,
+        skips_missing=on_missing_include is MissingInclude.SKIP,
+        model_by_itself=lambda root: _model_by_itself(root, sources)).expand(document)
     elements = elements_from_tree(document.root, sources, shapes=shapes)
     graph = frame_graph_from_elements(elements, sources.problems)
     sources.problems.raise_errors()

@@ -12,6 +12,7 @@ from sdf_pose_bridge.errors import AttributeInvalidError, FileReadError, Parsing
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.templates import check_is_expanded
+from sdf_pose_bridge.sdformat.urdf.conversion import sdf_from_urdf
 from sdf_pose_bridge.sdformat.versions import convert, Version, version_from_text
 from sdf_pose_bridge.sdformat.xml_file import xml_from_file
 from sdf_pose_bridge.sdformat.xml_tree import written_tag, XmlElement
@@ -61,8 +62,6 @@ def document_from_file(
     gazebo_children: dict[int, Any] = {}
     urdf_root = None
     if root.tag == 'robot':
-        # Most files are not URDF and do not need this import.
-        from sdf_pose_bridge.sdformat.urdf.conversion import sdf_from_urdf
         gazebo_children = dict(enumerate(root.xpath('gazebo/*')))
         for child in map(gazebo_children.pop, left_out):
             child.getparent().remove(child)

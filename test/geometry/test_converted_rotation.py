@@ -11,7 +11,7 @@ pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sdf_pose_bridge.geometry.converted_rotation import converted_rotation, Given
+from sdf_pose_bridge.geometry.converted_rotation import converted_rotation, RotationForm
 from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy, RotationError
 
 NO_RPY = (math.nan, math.nan, math.nan)
@@ -21,11 +21,11 @@ angles = st.floats(allow_nan=False, allow_infinity=False)
 
 
 def converted_rpy(*rpy, degrees=False):
-    return converted_rotation(Given.RPY, rpy, NO_QUATERNION, degrees=degrees)
+    return converted_rotation(RotationForm.RPY, rpy, NO_QUATERNION, degrees=degrees)
 
 
 def converted_quaternion(*quat_xyzw, degrees=False):
-    return converted_rotation(Given.QUATERNION, NO_RPY, quat_xyzw, degrees=degrees)
+    return converted_rotation(RotationForm.QUATERNION, NO_RPY, quat_xyzw, degrees=degrees)
 
 
 @pytest.mark.parametrize('unknown', [2, 255, -1])

@@ -19,8 +19,8 @@ from sdf_pose_bridge.cli.viewer.meshes import MeshReader
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.cli.viewer.surfaces import (
     boxes_of_surfaces,
+    DrawnSurface,
     lines_from_not_drawn,
-    Surface,
     surfaces_from_scene,
 )
 from sdf_pose_bridge.cli.viewer.view_point import (
@@ -230,7 +230,7 @@ class Drawing:
             f'{name}/grid spacing', f'grid {spacing_m:g} m', font_screen_scale=0.8,
             position=(*(middle + spacing_m * np.round(to_camera / spacing_m)), height_m))
 
-    def _add_surface(self, number: int, surface: Surface) -> Any:
+    def _add_surface(self, number: int, surface: DrawnSurface) -> Any:
         is_collision, shown = surface.kind == Kind.COLLISION, self.visible.shown
         name = f'{self._name}/{surface.kind.label}s/{number}'
         places = _places(shown.scene.poses[surface.elements])
@@ -258,7 +258,7 @@ def _places(poses: PoseArray) -> tuple[Floats, Floats]:
     return poses[:, _WXYZ], poses[:, :3]
 
 
-def _names_of_bodies(shown: ShownScene, surface: Surface) -> list[str]:
+def _names_of_bodies(shown: ShownScene, surface: DrawnSurface) -> list[str]:
     """Return the names of the copies of a surface: the frame of each, then the body in it."""
     ids, names, frames = shown.ids, shown.scene.names, shown.tree.nearest_frames
     return [

@@ -28,7 +28,7 @@ _GRAY = (0.52, 0.54, 0.57, 1.0)
 _MOST_LISTED = 3
 
 
-class Surface(NamedTuple):
+class DrawnSurface(NamedTuple):
     """The surface of visuals or collisions that differ only in place, size and color."""
 
     kind: Kind
@@ -45,7 +45,7 @@ class Surface(NamedTuple):
 
 def surfaces_from_scene(
     scene: Scene, elements: Sequence[int], size_m: float, meshes: MeshReader,
-) -> tuple[list[Surface], dict[str, list[str]]]:
+) -> tuple[list[DrawnSurface], dict[str, list[str]]]:
     """
     Choose the surfaces of visuals and collisions.
 
@@ -67,7 +67,7 @@ def surfaces_from_scene(
             # As in Gazebo, a material in the file replaces the materials of the mesh.
             has_texture = kind == Kind.VISUAL and shape.rgba is None and shape.opacity == 1.0
             copies[kind, form, file, has_texture].append(element)
-    surfaces: list[Surface] = []
+    surfaces: list[DrawnSurface] = []
     not_drawn: dict[str, list[str]] = defaultdict(list)
     triangle_count = 0
     for (kind, form, file, has_texture), same in copies.items():
@@ -84,9 +84,10 @@ def surfaces_from_scene(
         if mesh.reason:
             scales[:] = 1.0
         surfaces += [
-            Surface(kind, part if has_texture else part._replace(glb=b''), same, scales, np.array([
-                part.rgba if mesh.reason else shape.rgba_or(part.rgba or _GRAY)
-                for shape in shapes]), mesh.reason)
+            DrawnSurface(
+                kind, part if has_texture else part._replace(glb=b''), same, scales, np.array([
+                    part.rgba if mesh.reason else shape.rgba_or(part.rgba or _GRAY)
+                    for shape in shapes]), mesh.reason)
             for part in mesh.parts]
     return surfaces, not_drawn
 
@@ -103,7 +104,7 @@ def lines_from_not_drawn(not_drawn: Mapping[str, Sequence[str]]) -> list[str]:
     return lines
 
 
-def boxes_of_surfaces(scene: Scene, surfaces: Sequence[Surface]) -> Floats:
+def boxes_of_surfaces(scene: Scene, surfaces: Sequence[DrawnSurface]) -> Floats:
     """Return the lowest and the highest corner of each copy of surfaces, shape (n, 2, 3)."""
     boxes = [np.zeros((0, 2, 3))]
     for surface in surfaces:

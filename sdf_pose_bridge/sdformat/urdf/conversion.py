@@ -27,8 +27,7 @@ from lxml import etree
 from sdf_pose_bridge.errors import RelativeToError
 from sdf_pose_bridge.geometry.poses import Pose, pose_product
 from sdf_pose_bridge.names import MODEL_FRAME, WORLD_FRAME
-from sdf_pose_bridge.sdformat.inertials import Inertial as SdfInertial
-from sdf_pose_bridge.sdformat.inertials import MOMENTS, warn_of_inertial
+from sdf_pose_bridge.sdformat.inertials import Inertial, MOMENTS, warn_of_inertial
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import JOINT_TYPES, URDF_JOINT_TYPES
 from sdf_pose_bridge.sdformat.urdf.lumping import (
@@ -38,11 +37,11 @@ from sdf_pose_bridge.sdformat.urdf.lumping import (
     lumped_inertials,
 )
 from sdf_pose_bridge.sdformat.urdf.robot import (
-    Inertial,
-    Joint,
-    Link,
     Robot,
     robot_from_tree,
+    RobotInertial,
+    RobotJoint,
+    RobotLink,
 )
 from sdf_pose_bridge.sdformat.urdf.values import (
     leading_numbers,
@@ -147,7 +146,7 @@ class _Conversion:
                 'robot', is_for_gazebo=True)
         self._extensions[''] = kept
 
-    def _is_lumped(self, link: Link) -> bool:
+    def _is_lumped(self, link: RobotLink) -> bool:
         return self._bases[link.name].link is not link
 
     def _links_left_out(self) -> set[str]:
@@ -168,7 +167,7 @@ class _Conversion:
                         'LINK_INERTIA_INVALID', is_for_gazebo=self._for_ros)
             elif self._for_ros and inertial.mass > 0.0 and not (
                     self._is_lumped(link)
-                    or SdfInertial(inertial.mass, inertial.moments).is_valid):
+                    or Inertial(inertial.mass, inertial.moments).is_valid):
                 # Those of an included robot are judged when it is read.
                 warn_of_inertial(link.xml, link.name, self._sources, is_for_gazebo=True)
         return left_out
@@ -201,7 +200,9 @@ class _Conversion:
                     self._move_extension(child, member)
                 self._add_extensions(xml, member.name)
 
-    def _add_inertial(self, link_xml: XmlElement, link: Link, inertial: Inertial) -> None:
+    def _add_inertial(
+        self, link_xml: XmlElement, link: RobotLink, inertial: RobotInertial,
+    ) -> None:
         xml = self._add(link_xml, 'inertial', link.xml)
         self._add_pose(xml, link.xml, inertial.origin, rpy_by_gz_math)
         self._add(xml, 'mass', link.xml, text_from_numbers([inertial.mass]))
@@ -209,7 +210,9 @@ class _Conversion:
             self._add(xml, 'inertia', link.xml, numbers={
                 name: [moment] for name, moment in zip(MOMENTS, inertial.moments, strict=True)})
 
-    def _add_shapes(self, xml: XmlElement, tag: str, link: Link, members: Sequence[Link]) -> None:
+    def _add_shapes(
+        self, xml: XmlElement, tag: str, link: RobotLink, members: Sequence[RobotLink],
+    ) -> None:
         shapes = [
             (member.name, shape) for member in members for shape in member.shapes
             if shape.xml.tag == tag]
@@ -229,7 +232,7 @@ class _Conversion:
                 # ways.
                 self._add(new, 'uri', geometry, geometry.get('filename', ''))
 
-    def _add_joint(self, joint: Joint) -> bool:
+    def _add_joint(self, joint: RobotJoint) -> bool:
         joint_type = URDF_JOINT_TYPES[joint.type].sdformat
         if not joint_type:
             msg = f'joint "{joint.name}" is {joint.type}, which SDFormat does not have'
@@ -261,7 +264,7 @@ class _Conversion:
         self._add_extensions(xml, joint.name)
         return True
 
-    def _add_axis(self, xml: XmlElement, joint: Joint) -> None:
+    def _add_axis(self, xml: XmlElement, joint: RobotJoint) -> None:
         # A fixed joint has the axis of SDFormat, as URDF gives it none.
         is_fixed = joint.type == 'fixed'
         values = {} if is_fixed else joint.values
@@ -333,7 +336,7 @@ class _Conversion:
             child.tail = None
             xml.append(child)
 
-    def _move_extension(self, xml: XmlElement, link: Link) -> None:
+    def _move_extension(self, xml: XmlElement, link: RobotLink) -> None:
         pose = first_child(xml, 'pose')
         if xml.tag not in _MOVED_TAGS or not self._is_lumped(link) or (
                 pose is not None and pose.get('relative_to') is not None):

@@ -22,21 +22,21 @@ from sdf_pose_bridge.sdformat.inertials import (
     moments_from_matrix,
     moved_moments,
 )
-from sdf_pose_bridge.sdformat.urdf.robot import Inertial, Joint, Link, Robot
+from sdf_pose_bridge.sdformat.urdf.robot import Robot, RobotInertial, RobotJoint, RobotLink
 from sdf_pose_bridge.sdformat.urdf.values import pose_from_xyz_rpy, rpy_by_urdfdom
 
 
 class Base(NamedTuple):
     """The link that another one is lumped into; for other links, the link itself."""
 
-    link: Link
+    link: RobotLink
     pose: Pose
     """Pose of the lumped link in it."""
-    members: list[Link]
+    members: list[RobotLink]
     """The link itself and those that are lumped into it."""
 
 
-def is_reducible(joint: Joint, robot: Robot) -> bool:
+def is_reducible(joint: RobotJoint, robot: Robot) -> bool:
     """Return whether libsdformat removes a joint."""
     return joint.type == 'fixed' and joint.name not in robot.kept_joints
 
@@ -58,7 +58,7 @@ def bases_of_links(robot: Robot) -> dict[str, Base]:
 
 def lumped_inertials(
     robot: Robot, bases: Mapping[str, Base], *, skips_massless: bool,
-) -> dict[str, Inertial | None]:
+) -> dict[str, RobotInertial | None]:
     """
     Add the inertials of lumped links to those of their parents.
 
@@ -70,7 +70,7 @@ def lumped_inertials(
         if inertial is None or bases[link.name].link is link:
             continue
         joint = robot.parent_joints[link.name]
-        parent = inertials[joint.parent] or Inertial()
+        parent = inertials[joint.parent] or RobotInertial()
         place = pose_from_xyz_rpy(joint.origin[:3], rpy_by_urdfdom(joint.origin))
         if parent.mass + inertial.mass or not skips_massless:
             inertials[joint.parent] = lumped_inertial(
@@ -78,7 +78,7 @@ def lumped_inertials(
     return inertials
 
 
-def lumped_inertial(parent: Inertial, lumped: Inertial) -> Inertial:
+def lumped_inertial(parent: RobotInertial, lumped: RobotInertial) -> RobotInertial:
     """
     Add two inertials.
 
@@ -91,7 +91,7 @@ def lumped_inertial(parent: Inertial, lumped: Inertial) -> Inertial:
         for a, b in zip(parent.origin[:3], lumped.origin[:3], strict=True))
     origin = parent.origin._replace(x=x, y=y, z=z)
     if not mass:
-        return Inertial(mass, origin, parent.moments)
+        return RobotInertial(mass, origin, parent.moments)
     both = parent, lumped
     places = np.array([relative_pose(origin, each.origin) for each in both])
     axes = matrix_from_quaternion(places[:, 3:])
@@ -99,4 +99,4 @@ def lumped_inertial(parent: Inertial, lumped: Inertial) -> Inertial:
     moved = moved_moments(
         axes @ matrices @ axes.transpose(0, 2, 1), np.array([each.mass for each in both]),
         places[:, :3])
-    return Inertial(mass, origin, moments_from_matrix(moved.sum(axis=0)))
+    return RobotInertial(mass, origin, moments_from_matrix(moved.sum(axis=0)))

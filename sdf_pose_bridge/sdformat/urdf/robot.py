@@ -58,7 +58,7 @@ _SETTINGS = frozenset({
 _INERTIA = ' '.join(f'{name}!' for name in MOMENTS)
 
 
-class Inertial(NamedTuple):
+class RobotInertial(NamedTuple):
     """Mass, center of mass and moments of inertia of a link."""
 
     mass: float = 0.0
@@ -68,7 +68,7 @@ class Inertial(NamedTuple):
     """Those of ``MOMENTS`` in that frame."""
 
 
-class Shape(NamedTuple):
+class RobotShape(NamedTuple):
     """A visual or a collision."""
 
     xml: XmlElement
@@ -80,16 +80,16 @@ class Shape(NamedTuple):
     """Its dimensions."""
 
 
-class Link(NamedTuple):
+class RobotLink(NamedTuple):
     """A link."""
 
     xml: XmlElement
     name: str
-    inertial: Inertial | None
-    shapes: Sequence[Shape]
+    inertial: RobotInertial | None
+    shapes: Sequence[RobotShape]
 
 
-class Joint(NamedTuple):
+class RobotJoint(NamedTuple):
     """A joint; its frame is the frame of its child link."""
 
     xml: XmlElement
@@ -110,9 +110,9 @@ class Robot(NamedTuple):
     name: str
     origin: Pose
     """Its pose in the file."""
-    links: Sequence[Link]
+    links: Sequence[RobotLink]
     """The links in the tree, each before its children, which are in the order of their joints."""
-    parent_joints: Mapping[str, Joint]
+    parent_joints: Mapping[str, RobotJoint]
     """By the name of the child link, ordered by their own names in the file."""
     static: str | None
     """The text of ``<static>`` of the model in ``<gazebo>``; None if there is none."""
@@ -146,7 +146,7 @@ def robot_from_tree(root: XmlElement, sources: Sources, *, is_included: bool) ->
         for name, xml in _named_children(root, 'joint', errors).items()]
     origin = _robot_origin(root, sources, errors)
     errors.problems.raise_errors()
-    parent_joints: dict[str, Joint] = {}
+    parent_joints: dict[str, RobotJoint] = {}
     children: dict[str, list[str]] = {}
     for joint in sorted(filter(None, joints), key=lambda joint: joint.name.encode()):
         if joint.child in parent_joints:
@@ -163,7 +163,7 @@ def robot_from_tree(root: XmlElement, sources: Sources, *, is_included: bool) ->
             ParsingError, root, 'the links must be one tree, in which one link has no parent; '
             f'here these have none: {shown or "no link"}')
     errors.problems.raise_errors()
-    in_order: dict[str, Link] = {}
+    in_order: dict[str, RobotLink] = {}
     while names:
         name = names.pop()
         in_order[name] = links[name]
@@ -232,14 +232,14 @@ def _robot_origin(root: XmlElement, sources: Sources, errors: Sources) -> Pose:
     return _pose_of_origin(origin, numbers, sources)
 
 
-def _link(name: str, xml: XmlElement, sources: Sources, errors: Sources) -> Link:
+def _link(name: str, xml: XmlElement, sources: Sources, errors: Sources) -> RobotLink:
     inertial = None
-    shapes: list[Shape] = []
+    shapes: list[RobotShape] = []
     try:
         inertial_xml = first_child(xml, 'inertial')
         if inertial_xml is not None:
-            inertial = Inertial()
-            inertial = Inertial(origin=_origin(inertial_xml, sources))
+            inertial = RobotInertial()
+            inertial = RobotInertial(origin=_origin(inertial_xml, sources))
             mass = numbers_of(_required_child(inertial_xml, 'mass'), 'value!')
             inertial = inertial._replace(mass=mass['value'][0])
             inertia = numbers_of(_required_child(inertial_xml, 'inertia'), _INERTIA)
@@ -250,12 +250,12 @@ def _link(name: str, xml: XmlElement, sources: Sources, errors: Sources) -> Link
         errors.error(ElementInvalidError, xml, str(error))
     except ValueError as error:
         sources.warning(xml, f'link "{name}": {error}; libsdformat reads it no further')
-    return Link(xml, name, inertial, shapes)
+    return RobotLink(xml, name, inertial, shapes)
 
 
 def _joint(
-    name: str, xml: XmlElement, links: Mapping[str, Link], sources: Sources, errors: Sources,
-) -> Joint | None:
+    name: str, xml: XmlElement, links: Mapping[str, RobotLink], sources: Sources, errors: Sources,
+) -> RobotJoint | None:
     ends = []
     for tag in ('parent', 'child'):
         end = first_child(xml, tag)
@@ -285,7 +285,7 @@ def _joint(
             if tag == 'dynamics' and not values[tag]:
                 errors.error(
                     ParsingError, part, 'the <dynamics> has neither damping nor friction')
-        return Joint(xml, name, type_name, _origin(xml, sources), ends[0], ends[1], values)
+        return RobotJoint(xml, name, type_name, _origin(xml, sources), ends[0], ends[1], values)
     except ValueError as error:
         error_class = ElementInvalidError if isinstance(error, NotFiniteError) else ParsingError
         errors.error(error_class, xml, str(error))
@@ -315,7 +315,7 @@ def _pose_of_origin(origin: XmlElement | None, numbers: Numbers, sources: Source
     return pose_from_xyz_rpy(**numbers)
 
 
-def _shape(xml: XmlElement, sources: Sources) -> Shape:
+def _shape(xml: XmlElement, sources: Sources) -> RobotShape:
     origin = _origin(xml, sources)
     geometry = next(child_elements(_required_child(xml, 'geometry')), None)
     if geometry is None or geometry.tag not in _SHAPES:
@@ -329,4 +329,4 @@ def _shape(xml: XmlElement, sources: Sources) -> Shape:
     if xml.tag == 'visual' and material is not None and material.get('name') is None:
         msg = '<material> has no name'
         raise ValueError(msg)
-    return Shape(xml, origin, geometry, numbers)
+    return RobotShape(xml, origin, geometry, numbers)

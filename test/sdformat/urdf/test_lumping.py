@@ -10,7 +10,7 @@ import pytest
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
 from sdf_pose_bridge.sdformat.urdf.lumping import lumped_inertial
-from sdf_pose_bridge.sdformat.urdf.robot import Inertial
+from sdf_pose_bridge.sdformat.urdf.robot import RobotInertial
 
 HERE = Pose()
 TURNED = quaternion_from_rpy((0.0, 0.0, math.pi / 2.0))
@@ -20,11 +20,12 @@ def box(x, y, z, origin=HERE):
     """Return the inertial of a box of 12 kg per cubic metre."""
     moments = (y * y + z * z, x * x + z * z, x * x + y * y)
     mass = x * y * z
-    return Inertial(12.0 * mass, origin, (*(mass * moment for moment in moments), 0.0, 0.0, 0.0))
+    return RobotInertial(
+        12.0 * mass, origin, (*(mass * moment for moment in moments), 0.0, 0.0, 0.0))
 
 
 def test_center_of_nothing_is_not_a_number():
-    total = lumped_inertial(Inertial(), Inertial(origin=Pose(1.0)))
+    total = lumped_inertial(RobotInertial(), RobotInertial(origin=Pose(1.0)))
     assert total.mass == 0.0
     assert np.isnan(total.origin[:3]).all()
 
@@ -43,5 +44,5 @@ def test_sum_has_the_axes_of_the_parent():
 
 
 def test_link_without_a_mass_changes_nothing():
-    assert lumped_inertial(Inertial(), box(1, 2, 3, Pose(1.0))).moments == pytest.approx(
+    assert lumped_inertial(RobotInertial(), box(1, 2, 3, Pose(1.0))).moments == pytest.approx(
         box(1, 2, 3).moments)
