@@ -29,8 +29,8 @@ class Problems:
     """
     The errors and warnings of one load.
 
-    The first hundred of each are kept, each once however often its file is included; the rest is
-    counted. Messages are shortened where they are made.
+    The first hundred of each are kept, and the rest is counted. Problems of a file that is
+    included twice are kept once. Messages are shortened where they are made.
 
     :param paths: the files that are read, in the order of reading; it may grow.
     :param includes: the place of the include that first led to each included file; it may grow.

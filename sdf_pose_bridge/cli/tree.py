@@ -154,7 +154,7 @@ def _in_branches(
         # Nothing is below the root frame, as in the file of a robot that odometry places.
         children[-1].remove(0)
     lines: list[tuple[int, str]] = []
-    # How many frames below each line are too deep to be printed.
+    # The number of frames below each line that are too deep to be printed.
     hidden: list[int] = []
     waiting = [(index, 0, '') for index in reversed(children.get(-1, ()))]
     while waiting:

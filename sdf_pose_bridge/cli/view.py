@@ -54,7 +54,7 @@ _BROWSER_OPTIONS = (
     '--headless', '--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader',
     '--enable-unsafe-swiftshader', '--no-first-run', '--disable-background-networking',
     '--disable-component-update', '--disable-sync', '--disable-quic',
-    # 1600 x 1000 pixels, in which names can be read on a page that shows them smaller.
+    # 1600 x 1000 pixels, so that names can be read where the picture is shown smaller.
     '--window-size=1120,700', '--force-device-scale-factor=1.4286', '--hide-scrollbars',
     # Milliseconds without activity of the page before the picture is drawn.
     '--virtual-time-budget=10000')

@@ -99,7 +99,7 @@ def conversion(
     given: Representation[_One, Any], target: Representation[Any, _Result],
 ) -> Callable[[Callable[..., Any]], Conversion[_One, _Result]]:
     """
-    Make a formula a function that takes one rotation or many.
+    Wrap a formula: the result accepts one rotation or an array of them.
 
     One is a tuple or list, and the result is what the formula returns. Many are an array of shape
     (..., *given.shape), and the result has shape (..., *target.shape).

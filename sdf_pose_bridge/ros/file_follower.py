@@ -41,7 +41,7 @@ class FileFollower:
         self._retry_time = time.monotonic() + RETRY_PERIOD_S if is_temporary(error) else math.inf
 
     def follow_also(self, files: Iterable[str]) -> None:
-        """Follow more files, those that have to change before reading can succeed."""
+        """Also follow the files that have to change before reading can succeed."""
         self._watcher.watch_also(files)
 
     def has_to_read(self) -> bool:

@@ -221,7 +221,7 @@ class ParameterServices:
 
 
 def _without_repetition(callback: Callable[[Any, Any], Any]) -> Callable[[Any, Any], Any]:
-    """Return nothing if a name is repeated: a few bytes could request gigabytes."""
+    """Wrap a callback: a request that repeats a name, perhaps for gigabytes, gets no values."""
     def answer(request: Any, response: Any) -> Any:
         is_unique = len(set(request.names)) == len(request.names)
         return callback(request, response) if is_unique else response

@@ -10,8 +10,8 @@ each message, so that TF is complete.
 
 With a highest rate, a message is published at once and begins a period, which is the same for all
 topics. Later ones wait in the subscriptions for its end. Then the newest of them are published in
-one message, and another period begins if there are any. Only the first message of a topic after a
-silence does not wait, unless all topics were silent: then many robots may start together.
+one message, and another period begins if there are any. The first message of a silent topic is
+published at once, unless all topics are silent, as when many robots start together.
 """
 
 from __future__ import annotations

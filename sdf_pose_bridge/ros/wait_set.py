@@ -4,8 +4,7 @@
 Wait for messages in a thread, without the executor of the node.
 
 An executor takes three times as long for a message. ``rclpy.wait_for_message`` waits in the same
-way; it is the only example of a public function, and the names that are not public here are those
-that it uses. rclpy 7 to 10 have all of them.
+way and uses the same private names. rclpy 7 to 10 have all of them.
 """
 
 from __future__ import annotations

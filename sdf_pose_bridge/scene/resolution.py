@@ -144,7 +144,7 @@ def _place_automatic_inertials(root_poses: PoseArray, elements: Elements) -> dic
     collisions_of = defaultdict[int, list[int]](list)
     for index in np.flatnonzero(elements.kinds == Kind.COLLISION).tolist():
         collisions_of[int(elements.parents[index])].append(index)
-    # One row for each collision, ordered by inertials; ``owners`` has the position of its own.
+    # One row for each collision, ordered by inertials; ``owners`` has the inertial of each row.
     collisions = [index for link in links.tolist() for index in collisions_of[link]]
     counts = [len(inertial.solids) for inertial in automatic.values()]
     owners = np.repeat(np.arange(len(counts)), counts)

@@ -12,7 +12,7 @@ Signature: TypeAlias = tuple[int, ...] | None
 """Device, inode, size, and both times of change of a file; None if there is no file."""
 
 _CHANGED: Signature = ()
-"""The signature of no file."""
+"""Differs from every signature, so the file counts as changed."""
 
 _TICK_NS = 20_000_000
 """Largest difference between the clock and the times of files."""
@@ -42,7 +42,7 @@ class FileWatcher:
         recent: dict[str, Signature] = {
             path: signature for path, signature in signatures.items()
             if signature is not None and signature[-1] >= read_since_ns - _TICK_NS}
-        # Only once, as a file with a time in the future would always be recent.
+        # Reported once, because a file with a time in the future is always recent.
         changed = [path for path in recent if recent[path] != self._recent.get(path)]
         self._signatures = {**signatures, **dict.fromkeys(changed, _CHANGED)}
         self._recent = recent

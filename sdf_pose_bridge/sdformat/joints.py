@@ -23,7 +23,7 @@ AXIS_TAGS = ('axis', 'axis2')
 """The tags of the axes of a joint."""
 
 DEFAULT_END = '__default__'
-"""The parent or child that a ball joint has without one; no frame has this name."""
+"""Stands for a missing parent or child of a ball joint; no frame has this name."""
 
 
 class Reference(NamedTuple):

@@ -46,7 +46,7 @@ class MissingInclude(enum.Enum):
 
 class Usage:
     """
-    The use of a load so far. Limits are named by their fields.
+    The amounts that a load has used so far. Limits are named by their fields.
 
     :param limits: the limits of the load.
     """

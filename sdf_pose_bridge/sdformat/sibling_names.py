@@ -37,7 +37,7 @@ class SiblingNames:
         self._builder = builder
         self._sources = sources
         self._used: dict[tuple[int, Kind | None, str], tuple[Kind, int, bool]] = {}
-        """Kind, index, and whether the name is a new one, by parent, kind and name. The kind in
+        """Kind, index, and whether the element was renamed, by parent, kind and name. The kind in
         a key is None in the shared name space, except for a name that is replaced by a new one."""
 
     def add(self, kind: Kind, xml: XmlElement, parent: int, parent_path: str) -> str | None:

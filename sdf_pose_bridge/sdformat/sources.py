@@ -40,7 +40,7 @@ PARAMS_TAG = 'experimental:params'
 
 class Origin(NamedTuple):
     """
-    The place of an element, as far as it does not follow from its tree.
+    Facts about an element that its XML tree does not hold.
 
     The place of an included element is the place of its pose. Its content keeps its own places and
     the version of its own file.
@@ -110,7 +110,7 @@ class Sources:
         return part
 
     def of_unchanged_trees(self) -> Sources:
-        """Return the same sources with known places, which take long for deep or long names."""
+        """Return a copy that remembers places, which take long to find for deep or long names."""
         part = copy.copy(self)
         part._places = {}  # noqa: SLF001
         return part

@@ -35,7 +35,7 @@ _MOST_NAMES = 6
 """Largest number of attributes that a message names."""
 
 _MOST_LEVELS = 3
-"""Number of levels of elements inside an element in which the place of another one is searched."""
+"""Number of levels below an element that are searched for the right place of another one."""
 
 
 class UndefinedReporter:
@@ -93,7 +93,7 @@ class UndefinedReporter:
             self._warn(xml, f'{name}="{xml.get(name)}" of <{written_tag(xml)}>', hint)
 
     def report_tree(self, xml: XmlElement, definition: Definition) -> None:
-        """Warn of what is not defined in an element and below it, but for extensions."""
+        """Warn of undefined names in an element and below it, except in extensions."""
         self.report_attributes(xml, definition)
         for child in xml:
             child_definition = definition.children.get(child.tag)

@@ -44,7 +44,7 @@ _PLAIN_VALUES = {
     ':vector3': re.compile(rf'{_PLAIN_NUMBER}(?:[{WHITE_SPACE}]+{_PLAIN_NUMBER}){{2}}'),
     ':color': re.compile(rf'{_PLAIN_PART}(?:[{WHITE_SPACE}]+{_PLAIN_PART}){{2,3}}'),
 }
-"""The usual values of the most frequent types; that they are valid is seen fastest so."""
+"""Valid values of the most frequent types, checked first because most are of these forms."""
 _DECIMAL_CHARACTERS = f'0123456789+-.{WHITE_SPACE}'
 _LONG_EXPONENT = re.compile(r'[eE][+-]?[0-9]{3}')
 _LONGEST_PLAIN = 200
@@ -99,7 +99,7 @@ def judged_value(text: str, rule: Item) -> tuple[str, str]:
     :param text: the value. If it is not required, the default replaces a blank one.
     :param rule: the rule of the grammar for it, which is not a pose.
     :return: the rule that it breaks, empty if it is valid; and the numbers that were read, empty
-        if they agree with the text. Each is a part of a sentence behind the value.
+        if they agree with the text. In a message, both follow the value.
     """
     plain = _PLAIN_VALUES.get(rule.value)
     if plain is not None and plain.fullmatch(text):

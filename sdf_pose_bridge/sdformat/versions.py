@@ -163,10 +163,9 @@ def _move_elements(root: XmlElement, version: Version) -> None:
 
 def _convert_axes(root: XmlElement, version: Version, sources: Sources) -> None:
     """
-    Write ``xyz/@expressed_in`` for axes in the model frame; without ``<xyz>``, in an empty one.
+    Mark axes in the model frame by ``xyz/@expressed_in``; one without ``<xyz>`` gets an empty one.
 
-    1.4 to 1.5: they are by default; 1.6 to 1.7: ``use_parent_model_frame`` is the other way to say
-    so.
+    Before 1.5, axes are in it by default; before 1.7, by ``use_parent_model_frame``.
     """
     axes: dict[XmlElement, None] = {}
     if version < (1, 5):

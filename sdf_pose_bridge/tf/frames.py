@@ -162,7 +162,7 @@ def frames_at_joints(
     naming: FrameNaming, root_frame: str,
 ) -> list[Frame]:
     """
-    Make the frames between degrees of freedom, and those of joints away from their links.
+    Make a frame for each link that URDF needs and SDFormat has not.
 
     The frame between the turning and the sliding of a screw joint is left out, and so are those of
     joints to links that are not published, which are not in the URDF.

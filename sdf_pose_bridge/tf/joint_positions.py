@@ -195,7 +195,7 @@ class JointPositions:
         dofs, new, invalid = selection.dofs, values[selection.rows], []
         newest_ns = max((self._stamps_of_models_ns[each] for each in selection.models), default=0)
         is_late = stamp_ns < newest_ns and not ignore_stamps
-        # Most often all are taken. NaN is not at most anything.
+        # Most often all are valid. Comparisons with NaN are false.
         if is_late or not np.abs(new).max(initial=0.0) <= LARGEST_POSITION:
             is_taken = np.abs(new) <= LARGEST_POSITION
             invalid = [self.names[dof] for dof in dofs[~is_taken].tolist()]

@@ -198,7 +198,7 @@ class Page:
                 self._refresh()
 
     def _refresh(self) -> None:
-        """Show what the controls say by now."""
+        """Show the current state of the controls."""
         shown, selected, edit = self._shown, self._selected, self._edit
         units = self._units._replace(angle=_ANGLES[self._angles.value])
         # Many sliders take a browser long.

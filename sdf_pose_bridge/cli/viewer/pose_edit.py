@@ -86,7 +86,7 @@ class PoseEdit:
         self._show(units)
 
     def look_ahead(self) -> bool:
-        """Find the scene with the new pose; return whether this was not known."""
+        """Find the scene with the new pose; return False if it was known already."""
         shown, asked = self._shown, (self.pose, self.pose and self._shown.positions)
         element = shown.element_of(self._frame)
         if element < 0 or self._is_written or asked == self._looked_at:
@@ -104,7 +104,7 @@ class PoseEdit:
 
     @property
     def scene_ahead(self) -> Scene | None:
-        """The scene as the file would give it, or gives it by now; None if nothing is changed."""
+        """The scene with the changed pose, written or not; None if nothing is changed."""
         is_known = self.pose and self._looked_at and not self._errors
         return self._change.scene if self._change is not None and is_known else None
 
@@ -147,7 +147,7 @@ class PoseEdit:
         reference, pose, units = self._shown_for
         at = relative_pose(reference, pose)
         in_si = [number / unit.factor for number, unit in zip(typed, units.of_pose, strict=True)]
-        # Those that were not typed keep all their digits.
+        # Numbers that were not typed keep all their digits.
         values = [exact if number == shown else value for exact, number, shown, value in zip(
             (*at[:3], *rpy_from_quaternion(at[3:])), typed, self._values, in_si, strict=True)]
         pose = pose_product(
@@ -183,14 +183,14 @@ class PoseEdit:
         pose = self._pose
         if pose != self._placed:
             self._gizmo.position, self._gizmo.wxyz = pose[:3], (pose.qw, *pose[3:6])
-            # viser leaves it where it was if it is there but for a rounding error.
+            # viser does not move a gizmo by less than a rounding error.
             self._placed = self._pose_of_gizmo
         shown_for = self._reference, pose, units
         if shown_for != self._shown_for:
             before, self._shown_for = self._values, shown_for
             self._values = [*map(float, units.texts(relative_pose(self._reference, pose)))]
             for number, value, old in zip(self._numbers, self._values, before, strict=True):
-                # Others may have been typed just now.
+                # Other numbers may have been typed just now.
                 if value != old:
                     number.value = value
 

@@ -72,7 +72,7 @@ def server_for_its_owner(
     :raises CommandError: if this cannot be done with the installed viser.
     """
     rich.get_console().quiet = True
-    # Else each connection that a browser opens in advance, and closes, is an error with a trace.
+    # Otherwise connections that a browser opens in advance and closes are logged as errors.
     logging.getLogger('websockets').setLevel(logging.CRITICAL)
     # A tab may be closed while its page is drawn.
     warnings.filterwarnings('ignore', '.* on a closed connection', UserWarning)
@@ -93,8 +93,8 @@ def server_for_its_owner(
         guarded.append(answer)
         return serve(*arguments, **{**options, 'process_request': answer})
 
-    # viser has no place for this, so it is put where viser starts its server. To judge connections
-    # when viser has accepted them would be too late for earlier requests.
+    # viser has no hook for this, so it replaces the function by which viser starts its server.
+    # After viser has accepted a connection, it would be too late for earlier requests.
     websockets_server.serve = guarded_serve  # type: ignore[assignment,misc]
     try:
         server = viser.ViserServer(_ADDRESS, port, verbose=False)

@@ -259,13 +259,13 @@ class _Conversion:
         if JOINT_TYPES[joint_type]:
             self._add_axis(xml, joint)
         elif joint.name in self._robot.kept_joints and not self._for_ros:
-            # Other joints may mimic it, as libsdformat gives it the axis of a default.
+            # Other joints may mimic it, because libsdformat gives it a default axis.
             self._add(xml, 'axis', joint.xml)
         self._add_extensions(xml, joint.name)
         return True
 
     def _add_axis(self, xml: XmlElement, joint: RobotJoint) -> None:
-        # A fixed joint has the axis of SDFormat, as URDF gives it none.
+        # URDF gives a fixed joint no axis, so it gets the default of SDFormat.
         is_fixed = joint.type == 'fixed'
         values = {} if is_fixed else joint.values
         xyz = values.get('axis', {'xyz': [0.0, 0.0, 1.0] if is_fixed else [1.0, 0.0, 0.0]}).get(
