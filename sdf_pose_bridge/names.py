@@ -27,6 +27,7 @@ JOINT_SUFFIX = '_joint'
 """Appended to the name of a joint if another element has the name."""
 
 _LONGEST_VALUE = 80
+_LONGEST_PATH = 300
 _LONGEST_MESSAGE = 2000
 _QUOTED = re.compile(r'"([^"]*)"')
 
@@ -79,8 +80,13 @@ def unused_name(name: str, used: set[str], separator: str = '_') -> str:
 
 
 def shortened(value: str, longest: int = _LONGEST_VALUE) -> str:
-    """Return a value from a file for a message, without its middle if it is too long."""
-    if len(value) <= longest:
+    """
+    Return a value from a file for a message, without its middle if it is too long.
+
+    A path or a URI may be longer than other values.
+    """
+    if len(value) <= longest or ('/' in value and ' ' not in value and (
+            len(value) <= _LONGEST_PATH)):
         return value
     half = (longest - 3) // 2
     return f'{value[:half]}...{value[-half:]}'

@@ -4,14 +4,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 import contextlib
 import gc
 import os
 
-from sdf_pose_bridge.errors import LimitError, LoadError, SdfError
+from sdf_pose_bridge.errors import LimitError, LoadError, Place, SdfError
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.names import SEPARATOR, shortened
 from sdf_pose_bridge.scene.frame_graph import frame_graph_from_elements
 from sdf_pose_bridge.scene.resolution import poses_in_references, scene_from_graph
 from sdf_pose_bridge.scene.scene import Scene
@@ -65,6 +65,7 @@ def load(
     :raises SdfError: if the file is not valid; its ``errors`` has all errors.
     """
     on_missing_include = MissingInclude(on_missing_include)
+    directories = [os.fspath(each) for each in resource_paths]
     gazebo_errors: list[SdfError] = []
     left_out: set[int] = set()
     while True:
@@ -77,7 +78,7 @@ def load(
                     f'{error.message}; so {"this part" if document.gazebo_children else "all"} of '
                     '<gazebo> elements is left out', error.place, error.code, is_for_gazebo=True)
             try:
-                return _scene(document, sources, resource_paths, on_missing_include, shapes=shapes)
+                return _scene(document, sources, directories, on_missing_include, shapes=shapes)
             except LoadError as error:
                 if not document.gazebo_children:
                     raise
@@ -117,11 +118,16 @@ def load_text(
 
 
 def _scene(
-    document: Document, sources: Sources, resource_paths: Iterable[str | os.PathLike[str]],
+    document: Document, sources: Sources, directories: Sequence[str],
     on_missing_include: MissingInclude, *, shapes: bool,
 ) -> Scene:
+    for directory in directories:
+        if not os.path.isdir(directory):  # noqa: PTH112
+            sources.problems.warning(
+                f'resource_paths names "{shortened(directory)}", which is not a directory',
+                Place(document.path))
     IncludeExpansion(
-        resource_finder(resource_paths), sources,
+        resource_finder(directories), sources,
         skips_missing=on_missing_include is MissingInclude.SKIP,
         model_by_itself=lambda root: _model_by_itself(root, sources)).expand(document)
     elements = elements_from_tree(document.root, sources, shapes=shapes)

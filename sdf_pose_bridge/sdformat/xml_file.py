@@ -12,8 +12,10 @@ import codecs
 from collections.abc import Mapping
 import contextlib
 import errno
+from glob import escape
 from itertools import chain
 import os
+from pathlib import Path
 import re
 import stat
 from typing import NamedTuple
@@ -23,7 +25,7 @@ from lxml import etree
 import numpy as np
 
 from sdf_pose_bridge.errors import FileReadError, PassingReadError, Place, SdfWarning
-from sdf_pose_bridge.names import shortened_message
+from sdf_pose_bridge.names import hint_from_names, shortened_message
 from sdf_pose_bridge.process_limits import raise_limits
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.templates import hint_about_template
@@ -33,6 +35,10 @@ from sdf_pose_bridge.sdformat.xml_tree import is_foreign, WHITE_SPACE, XmlElemen
 _PASSING = frozenset({
     errno.EAGAIN, errno.EINTR, errno.EIO, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.ESTALE,
     errno.ETIMEDOUT})
+
+_WORLDS_OF_GAZEBO = (
+    'opt/ros/*/opt/gz_sim_vendor/share/gz/gz-sim*/worlds', 'usr/share/gz/gz-sim*/worlds')
+"""Directories below the root of the worlds that come with Gazebo."""
 
 _FAULTS = {
     r'Opening and ending tag mismatch: (.+) line (\d+) and (.+)':
@@ -133,7 +139,17 @@ def _cure(path: str) -> str:
         return '; name a file in it'
     if '$' in path or path.startswith('~'):
         return '; $ and ~ stay as they are in quotes and in parameter files'
-    return '; this is a URI, and not a path' if '://' in path else ''
+    if '://' in path:
+        return '; this is a URI, and not a path'
+    folder, name = os.path.split(path)
+    worlds = [
+        world for each in _WORLDS_OF_GAZEBO for world in Path('/').glob(f'{each}/{escape(name)}')]
+    if worlds and not folder:
+        return f'; Gazebo has it as "{worlds[-1]}"'
+    try:
+        return hint_from_names(name, os.listdir(folder or '.'))  # noqa: PTH208
+    except (OSError, ValueError):
+        return ''
 
 
 def _descriptor_without_waiting(path: str, flags: int) -> int:

@@ -6,7 +6,7 @@ import gc
 from pathlib import Path
 
 import pytest
-from sdf_texts import errors_of, model_file
+from sdf_texts import errors_of, LINK, model_file
 
 import sdf_pose_bridge
 from sdf_pose_bridge.errors import LoadError
@@ -110,3 +110,8 @@ def test_garbage_collection_is_as_before(is_enabled):
 def test_unknown_choice_for_missing_includes_is_refused():
     with pytest.raises(ValueError, match='ignore'):
         sdf_pose_bridge.load_text(model_file('<link name="l"/>'), on_missing_include='ignore')
+
+
+def test_resource_path_that_is_not_a_directory_is_a_warning():
+    (warning,) = sdf_pose_bridge.load_text(model_file(LINK), resource_paths=['nowhere']).warnings
+    assert warning.message == 'resource_paths names "nowhere", which is not a directory'

@@ -47,6 +47,12 @@ def test_unreadable_file_is_refused(tmp_path, path):
     assert (caught.value.code, caught.value.file) == ('FILE_READ', str(tmp_path / path))
 
 
+def test_misspelt_file_has_the_nearest_name_in_its_folder(tmp_path):
+    (tmp_path / 'cell.sdf').touch()
+    with pytest.raises(FileReadError, match=r'; did you mean "cell\.sdf"\?$'):
+        bytes_from_file(str(tmp_path / 'cel.sdf'), Usage())
+
+
 @pytest.mark.parametrize('path', ['/dev/zero', '/dev/null', '/'])
 def test_only_regular_files_are_read(path):
     with pytest.raises(FileReadError):

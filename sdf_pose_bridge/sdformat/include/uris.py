@@ -18,7 +18,7 @@ from typing import NamedTuple
 from urllib.parse import unquote, urlsplit
 
 from sdf_pose_bridge.errors import AddressError, FileReadError, ParsingError, Place, SdfWarning
-from sdf_pose_bridge.names import quoted_names, shortened
+from sdf_pose_bridge.names import hint_from_names, quoted_names, shortened
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.versions import NEWEST, version_numbers
 from sdf_pose_bridge.sdformat.xml_file import xml_from_file
@@ -34,8 +34,26 @@ _MODELS_OF_GAZEBO_CLASSIC = ('model://sun', 'model://ground_plane')
 _LONGEST_URI = 500
 """Length of the longest URI in a command that a message advises."""
 
+_MOST_LEVELS = 4
+"""Number of directories around a file in which a model is searched for a message."""
+
 _MOST_SHOWN = 5
 """Largest number of directories that a message names."""
+
+
+class _Candidate(NamedTuple):
+    """A path at which a file may be."""
+
+    directory: str
+    """A directory that is searched, or that of a model or package."""
+    relative: str
+    """The rest of the path; an absolute path replaces the directory."""
+    is_owner: bool = False
+    """Whether the directory is that of the model or package in the URI."""
+
+    @property
+    def path(self) -> str:
+        return os.path.join(self.directory, self.relative)  # noqa: PTH118
 
 
 class ResourceFinder(NamedTuple):
@@ -62,7 +80,8 @@ class ResourceFinder(NamedTuple):
 
         :param uri: such as ``model://box``, ``package://pkg/models/box`` or ``box.sdf``.
         """
-        found = next(filter(os.path.exists, self._candidates(uri, including_file)), None)
+        paths = (candidate.path for candidate in self._candidates(uri, including_file))
+        found = next(filter(os.path.exists, paths), None)
         return None if found is None else str(Path(found))
 
     def file_from_uri(self, uri: str, naming_file: str) -> str | None:
@@ -136,25 +155,54 @@ class ResourceFinder(NamedTuple):
             # A longer message would be cut in its middle.
             command = ['gz', 'fuel', 'download', '-u', uri if len(uri) <= _LONGEST_URI else 'URI']
             return f'it is not in the cache of Gazebo Fuel; fetch it with: {shlex.join(command)}'
+        if uri in _MODELS_OF_GAZEBO_CLASSIC:
+            return 'it comes with Gazebo Classic, and no frame needs it'
+        folder, missing = self._deepest_folder(uri, including_file)
+        if folder:
+            return f'"{folder}" has no "{missing}"{hint_from_names(missing, _entries(folder))}'
         beside = [] if scheme in _SHARED else [
             os.path.dirname(including_file) or '.']  # noqa: PTH120
         directories = [*dict.fromkeys((
             *beside, *self.search_paths, *self.environment_paths, '.'))]
-        packages = ''
+        reason = f'it is not in {quoted_names(directories, _MOST_SHOWN)}'
+        first, _, rest = name.lstrip('/').partition('/')
         if scheme == 'package':
-            package = name.lstrip('/').partition('/')[0]
-            is_known = next(self._package_shares(package), None) is not None
-            packages = f'the package "{package}" has no such file, and it is ' if is_known else (
-                f'no package "{package}" is installed, and it is ')
-        cure = ('it comes with Gazebo Classic, and no frame needs it'
-                if uri in _MODELS_OF_GAZEBO_CLASSIC else
-                '-I, the parameter resource_paths and GZ_SIM_RESOURCE_PATH add directories')
-        return f'{packages or "it is "}not in {quoted_names(directories, _MOST_SHOWN)}; {cure}'
+            reason = f'no package "{first}" is installed, and {reason}'
+        elsewhere = _directory_near(including_file, first)
+        if elsewhere:
+            return (f'{reason}, but in "{elsewhere}"; add that to resource_paths (-I on the '
+                    'command line)')
+        hint = '' if rest else hint_from_names(
+            first, [entry for each in directories for entry in _entries(each)])
+        return (f'{reason}; resource_paths (-I on the command line) and GZ_SIM_RESOURCE_PATH add '
+                f'directories{hint}')
 
-    def _candidates(self, uri: str, including_file: str) -> Iterator[str]:
+    def _deepest_folder(self, uri: str, including_file: str) -> tuple[str, str]:
+        """
+        Find the part of a URI that does not exist.
+
+        :return: the folder in which it is missing, and its name; empty texts if not even the
+            model, the package or the first folder exists.
+        """
+        deepest = 0
+        found = '', ''
+        for candidate in self._candidates(uri, including_file):
+            directory, relative, is_owner = candidate
+            folder = '/' if relative.startswith('/') else directory
+            for depth, part in enumerate(filter(None, relative.split('/')), is_owner):
+                path = os.path.join(folder, part)  # noqa: PTH118
+                if not os.path.exists(path):  # noqa: PTH110
+                    if depth > deepest:
+                        deepest, found = depth, (folder, part)
+                    break
+                folder = path
+        return found
+
+    def _candidates(self, uri: str, including_file: str) -> Iterator[_Candidate]:
         scheme, name = _scheme_and_name(uri)
         if scheme in _WEB:
-            yield from self._paths_in_fuel_cache(uri)
+            for path in self._paths_in_fuel_cache(uri):
+                yield _Candidate('', path)
             return
         if not name:
             return
@@ -162,21 +210,21 @@ class ResourceFinder(NamedTuple):
         # is found, as this takes long for a name with many slashes. Gazebo ignores a third slash.
         relative = name.lstrip('/') if scheme in _SHARED else name
         for directory in self.search_paths:
-            yield os.path.join(directory, relative)  # noqa: PTH118
+            yield _Candidate(directory, relative)
         if scheme == 'package':
             package, _, rest = relative.partition('/')
             for share in self._package_shares(package):
-                yield str(share / rest)
+                yield _Candidate(str(share), rest, is_owner=True)
         if scheme in ('', 'file'):
-            yield os.path.join(os.path.dirname(including_file), name)  # noqa: PTH118, PTH120
+            yield _Candidate(os.path.dirname(including_file), name)  # noqa: PTH120
         for directory in self.environment_paths:
-            yield os.path.join(directory, relative)  # noqa: PTH118
+            yield _Candidate(directory, relative)
         if scheme in _SHARED:
             owner, _, rest = relative.partition('/')
             for folder in Path(including_file).absolute().parents:
                 if _is_root_of(folder, owner):
-                    yield str(folder / rest)
-        yield name
+                    yield _Candidate(str(folder), rest, is_owner=True)
+        yield _Candidate('', name)
 
     def _package_shares(self, package: str) -> Iterator[Path]:
         for prefix in self.package_prefixes:
@@ -253,9 +301,20 @@ def _entry_in_any_case(directory: str, name: str) -> str:
     return f'{directory}/{name}'
 
 
+def _directory_near(file: str, name: str) -> str:
+    """Return a directory around a file, or ``models`` in one, that holds a model; '' if none."""
+    folder = os.path.abspath(file)  # noqa: PTH100
+    for _ in range(_MOST_LEVELS):
+        folder = os.path.dirname(folder)  # noqa: PTH120
+        for directory in (f'{folder}/models', folder):
+            if name and os.path.isdir(f'{directory}/{name}'):  # noqa: PTH112
+                return directory
+    return ''
+
+
 def _entries(directory: str) -> list[str]:
     try:
-        return os.listdir(directory)  # noqa: PTH208
+        return os.listdir(directory or '.')  # noqa: PTH208
     except OSError:
         return []
 

@@ -198,6 +198,35 @@ def test_reason_for_a_missing_model_names_what_was_searched(uri, reason):
     assert 'GZ_SIM_RESOURCE_PATH' in finder.reason_not_found(uri, 'cells/a.sdf')
 
 
+@pytest.mark.parametrize(('uri', 'file', 'missing'), [
+    ('package://arm/meshes/basee.stl', 'urdf/arm.urdf', 'basee.stl'),
+    ('model://arm/meshes/basee.stl', 'urdf/arm.urdf', 'basee.stl'),
+    ('../meshes/basee.stl', 'urdf/arm.urdf', 'basee.stl'),
+    ('package://arm/mesh/base.stl', 'urdf/arm.urdf', 'mesh'),
+])
+def test_reason_names_the_folder_without_the_file_and_the_nearest_name(
+        tmp_path, uri, file, missing):
+    write(tmp_path / 'arm', 'model.config')
+    write(tmp_path / 'arm', 'meshes/base.stl')
+    write(tmp_path / 'arm', file)
+    reason = resource_finder((), {}).reason_not_found(uri, str(tmp_path / 'arm' / file))
+    nearest = {'basee.stl': 'base.stl', 'mesh': 'meshes'}[missing]
+    assert reason.endswith(f'" has no "{missing}"; did you mean "{nearest}"?')
+
+
+def test_reason_for_a_model_in_a_folder_beside_the_file_names_the_folder(tmp_path):
+    write(tmp_path / 'models/arm', 'model.sdf')
+    reason = resource_finder((), {}).reason_not_found(
+        'model://arm', str(tmp_path / 'worlds/cell.sdf'))
+    assert f'but in "{tmp_path}/models"; add that to resource_paths (-I ' in reason
+
+
+def test_reason_for_a_misspelt_file_has_the_nearest_name(tmp_path):
+    write(tmp_path, 'table.sdf')
+    reason = resource_finder((), {}).reason_not_found('tabel.sdf', str(tmp_path / 'cell.sdf'))
+    assert reason.endswith('; did you mean "table.sdf"?')
+
+
 # Addresses that users give
 
 @pytest.fixture
