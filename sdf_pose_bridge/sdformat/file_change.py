@@ -12,6 +12,7 @@ from itertools import islice
 import os
 from pathlib import Path
 import shutil
+import stat
 import tempfile
 from typing import NamedTuple
 
@@ -117,11 +118,14 @@ def replace_file(path: str, old: bytes, new: bytes) -> None:
 
 def _refusal(path: Path, old: bytes, new: bytes) -> str:
     """Replace the content of a file, or return why it must not be replaced."""
-    # The rename below would replace a read-only file too, so it is opened for writing.
-    with path.open('r+b') as file:
+    # The rename below would replace a read-only file too, so it is opened for writing. Whatever
+    # else takes its place is not waited for, and not read.
+    with os.fdopen(os.open(path, os.O_RDWR | os.O_NONBLOCK), 'rb') as file:
+        status = os.fstat(file.fileno())
+        if not stat.S_ISREG(status.st_mode):
+            return 'it is no regular file any more'
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         path = path.resolve()
-        status = os.fstat(file.fileno())
         if status.st_nlink > 1:
             return (f'the file has {status.st_nlink} names (hard links), and the others would '
                     'keep the old text; copy it first, or change it by an editor')
@@ -141,7 +145,7 @@ def _refusal(path: Path, old: bytes, new: bytes) -> str:
                 new_file.write(new)
                 new_file.flush()
                 os.fsync(new_file.fileno())
-            if path.read_bytes() != old:
+            if file.read(len(old) + 1) != old or not os.path.samestat(status, path.stat()):
                 return 'the file has changed since it was read, so it is not overwritten'
             new_path.replace(path)
     return ''

@@ -6,16 +6,24 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 import os
+import time
 from typing import TypeAlias
 
 Signature: TypeAlias = tuple[int, ...] | None
-"""Device, inode, size, and both times of change of a file; None if there is no file."""
+"""
+Device, inode, size, and both times of change of a file; None if there is no file.
+
+Last, whether it may change again without another time: some file systems have times of whole
+seconds, or of two. So each change there counts as a second one when this is over.
+"""
 
 _CHANGED: Signature = ()
 """Differs from every signature, so the file counts as changed."""
 
 _TICK_NS = 20_000_000
 """Largest difference between the clock and the times of files."""
+
+_SECOND_NS = 1_000_000_000
 
 
 class FileWatcher:
@@ -41,7 +49,7 @@ class FileWatcher:
         signatures = _signatures(paths)
         recent: dict[str, Signature] = {
             path: signature for path, signature in signatures.items()
-            if signature is not None and signature[-1] >= read_since_ns - _TICK_NS}
+            if signature is not None and signature[-2] >= read_since_ns - _TICK_NS}
         # Reported once, because a file with a time in the future is always recent.
         changed = [path for path in recent if recent[path] != self._recent.get(path)]
         self._signatures = {**signatures, **dict.fromkeys(changed, _CHANGED)}
@@ -67,5 +75,7 @@ def _signature(path: str) -> Signature:
     except (OSError, ValueError):
         return None
     # ctime cannot be set, so it also shows changed files whose old time was restored.
+    changed_ns = status.st_ctime_ns
+    is_recent = changed_ns % _SECOND_NS == 0 and time.time_ns() < changed_ns + 2 * _SECOND_NS
     return (
-        status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns)
+        status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns, changed_ns, is_recent)

@@ -145,6 +145,28 @@ def test_a_file_that_has_changed_is_not_overwritten(path):
     assert not left_beside(path)
 
 
+def test_a_pipe_in_the_place_of_the_file_is_refused(path):
+    path.unlink()
+    os.mkfifo(path)
+    with pytest.raises(FileWriteError, match='it is no regular file any more'):
+        replace_file(str(path), OLD, NEW)
+    assert not left_beside(path)
+
+
+@pytest.mark.parametrize('make', [os.mkfifo, lambda other: other.open('wb').truncate(10**12)])
+def test_what_takes_the_place_of_the_file_meanwhile_is_neither_waited_for_nor_read(
+        path, monkeypatch, make):
+    def swap():
+        other = path.with_name('other')
+        make(other)
+        other.replace(path)
+
+    edited_meanwhile(monkeypatch, swap)
+    with pytest.raises(FileWriteError, match='has changed since it was read'):
+        replace_file(str(path), OLD, NEW)
+    assert not left_beside(path)
+
+
 @pytest.mark.parametrize('edit', ['in place', 'by another file'])
 def test_an_edit_while_the_new_file_is_written_is_kept(path, monkeypatch, edit):
     def change():

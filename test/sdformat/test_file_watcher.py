@@ -3,6 +3,7 @@
 """Changes of files are noticed once each, whatever way they come about."""
 
 import os
+from types import SimpleNamespace
 
 import pytest
 
@@ -126,6 +127,22 @@ def test_a_time_that_lies_ahead_does_not_make_a_file_change_for_ever(path):
         watcher.watch([str(path)], LONG_AGO)
         watcher.notices_change()
     watcher.watch([str(path)], LONG_AGO)
+    assert not watcher.notices_change()
+
+
+def test_a_second_change_with_the_same_time_is_noticed_where_times_are_whole_seconds(
+        path, monkeypatch):
+    now_ns = path.stat().st_ctime_ns
+    second_ns = now_ns - now_ns % 10**9
+    status = SimpleNamespace(
+        st_dev=1, st_ino=1, st_size=1, st_mtime_ns=second_ns, st_ctime_ns=second_ns)
+    monkeypatch.setattr('os.stat', lambda _path: status)
+    monkeypatch.setattr('time.time_ns', lambda: now_ns)
+    watcher = FileWatcher()
+    watcher.watch([str(path)], LATER)
+    assert not watcher.notices_change()
+    now_ns += 2 * 10**9
+    assert watcher.notices_change()
     assert not watcher.notices_change()
 
 
