@@ -8,6 +8,7 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from listener import latched
+from slow_file import SlowFile
 from visualization_msgs.msg import Marker, MarkerArray
 
 
@@ -67,6 +68,21 @@ def test_each_listener_gets_the_visuals_of_the_published_file(
     assert len(arrays) == 1
     late = start_listener()
     wait_for_types(late, arrays_of(late), Marker.CUBE)
+
+
+def test_a_file_is_set_while_markers_are_made(listener, tmp_path):
+    slow = SlowFile(tmp_path / 'slow.sdf', '<sdf version="1.10"><model name="m">'
+                    '<link name="l"/></model></sdf>')
+    including, small = tmp_path / 'including.sdf', tmp_path / 'small.sdf'
+    including.write_text('<sdf version="1.10"><world name="w"><include><uri>slow.sdf</uri>'
+                         '</include></world></sdf>', encoding='utf-8')
+    small.write_text(crate(BALL), encoding='utf-8')
+    set_parameters(listener, sdf_file=str(including))
+    slow.hold()
+    arrays = arrays_of(listener)
+    with slow.opened():
+        set_parameters(listener, sdf_file=str(small))
+        wait_for_types(listener, arrays, Marker.SPHERE)
 
 
 def test_visuals_follow_a_reload(listener, file):

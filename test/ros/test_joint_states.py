@@ -3,6 +3,7 @@
 """What messages of joint states put on ``/tf``: which frames, with which stamp, and how often."""
 
 import math
+import threading
 import time
 
 import pytest
@@ -11,6 +12,7 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import TransformStamped
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rosgraph_msgs.msg import Clock
@@ -90,7 +92,7 @@ class Following:
     def follow(self, frames, topics, rule):
         self._beside(self._executor, self.states.follow, frames, LOOKUP, topics, rule)
 
-    def frames_of(self, text, unreported=UnreportedJoints.NONE):
+    def frames_of(self, text=ARM, unreported=UnreportedJoints.NONE):
         scene = load_text(text)
         tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
         positions = JointPositions(scene, tree.moving.dofs, unreported=unreported)
@@ -250,6 +252,35 @@ def test_other_frames_continue_with_the_positions_and_one_nanosecond_later(arm):
     arm.wait(lambda: arm.found)
     assert arm.published((FIRST + 1, {'turn': 0.5, 'lift': 0.5})) == [
         (FIRST, {'slide', 'finger'}), (FIRST + 1, {'slide'})]
+
+
+def test_nothing_of_the_frames_before_is_published_once_others_are_followed(arm):
+    goes_on, published, before = threading.Event(), [], arm.frames
+
+    def publish_slowly(rows):
+        goes_on.wait(0.2)
+        published.append(rows)
+
+    before.publish_tf = publish_slowly
+    arm.send(FIRST, {'turn': 0.5})
+    arm.spin(0.1)
+    arm.follow(arm.frames_of(), TOPICS, EACH)
+    count = len(published)
+    arm.send(FIRST + 1, {'turn': 0.5})
+    arm.wait(lambda: FIRST + 1 in arm.secs())
+    assert len(published) == count == 1
+
+
+def test_subscriptions_are_made_and_destroyed_by_the_executor(following):
+    threads = set()
+
+    def remember(_parameters):
+        threads.add(threading.current_thread())
+        return SetParametersResult(successful=True)
+
+    following.node.add_on_set_parameters_callback(remember)
+    following.start()
+    assert threads == {threading.current_thread()}
 
 
 def test_topics_have_few_of_many_messages_and_the_last_one_again_at_rest(arm):

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Frames published by a real node: which topics there are, and which publishers stay."""
 
+import threading
 import time
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from geometry_msgs.msg import PoseStamped, TransformStamped
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.qos import (
     DurabilityPolicy,
     qos_profile_sensor_data,
@@ -20,12 +22,15 @@ from tf2_msgs.msg import TFMessage
 from tf_checks import tree_of
 
 from sdf_pose_bridge import load_text
+from sdf_pose_bridge.ros.given_parameters import settings_from_values
 from sdf_pose_bridge.ros.joint_states import JointStates
 from sdf_pose_bridge.ros.parameters import Settings
-from sdf_pose_bridge.ros.published_frames import PublishedFrames
+from sdf_pose_bridge.ros.published_frames import frames_from_scene, PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.ros.topic_names import JointStateTopics
 from sdf_pose_bridge.tf.joint_positions import JointPositions, UnreportedJoints
+from sdf_pose_bridge.tf.loaded_scene import LoadRequest
+from sdf_pose_bridge.tf.loading import loaded_scene_from_request
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 OTHERS = {'/tf_static', '/bridge/transforms'}
@@ -33,6 +38,7 @@ LATCHED = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 ARM = """<sdf version="1.11"><model name="arm"><link name="base"/><link name="upper"/>
 <joint name="turn" type="revolute"><parent>base</parent><child>upper</child>
   <axis><xyz>0 0 1</xyz></axis></joint></model></sdf>"""
+SETTINGS = settings_from_values({'sdf_file': 'arm.sdf'})
 WORLD = '<sdf version="1.10"><world name="w">{}</world></sdf>'
 
 
@@ -93,6 +99,44 @@ def test_another_tree_gets_another_stamp(node):
     same = PublishedFrames(publishers, first.tree, None, {}, first)
     other = PublishedFrames(publishers, tree_of_frames('a'), None, {}, first)
     assert first.stamp_ns == same.stamp_ns < other.stamp_ns
+
+
+def test_frames_are_made_by_another_thread_and_parameters_changed_by_the_executor(node, beside):
+    threads = set()
+
+    def remember(_parameters):
+        threads.add(threading.current_thread())
+        return SetParametersResult(successful=True)
+
+    node.add_on_set_parameters_callback(remember)
+    publishers = Publishers(node)
+    before = PublishedFrames(publishers, tree_of_frames('a'), None, {})
+    threads.clear()
+    loaded = loaded_scene_from_request(LoadRequest(
+        '', ARM, tf_options=TfOptions(use_joint_states=True)))
+    frames = beside(node.executor, frames_from_scene, node, loaded, SETTINGS, before)
+    assert frames.moving is not None
+    assert threads == {threading.current_thread()}
+    assert '/bridge/poses/upper' in topics_of(node)
+
+
+def test_a_topic_that_cannot_be_made_leaves_the_publishers_as_they_were(
+        node, beside, monkeypatch):
+    publishers = Publishers(node)
+    before = PublishedFrames(publishers, tree_of_frames('a'), None, {})
+    topics = topics_of(node)
+    opened = publishers.opened
+
+    def fail_at_poses(topic):
+        if topic.name == '~/poses/upper':
+            raise RuntimeError
+        return opened(topic)
+
+    monkeypatch.setattr(publishers, 'opened', fail_at_poses)
+    with pytest.raises(RuntimeError):
+        beside(node.executor, frames_from_scene, node, loaded_scene_from_request(
+            LoadRequest('', ARM)), SETTINGS, before)
+    assert topics_of(node) == topics
 
 
 def frames_of_arm(publishers, before=None, unreported=UnreportedJoints.ZERO, pose_frame=''):

@@ -32,9 +32,13 @@ def test_shapes_of_the_scene_before_are_no_longer_read_and_not_shown(
     visuals = VisualPublisher(node, reader, old)
     visuals.switch(on=True)
     executor, found = make_executor(listener), []
-    listener.create_subscription(
-        MarkerArray, '/bridge/visuals', found.append,
-        QoSProfile(depth=9, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+
+    def listen():
+        return listener.create_subscription(
+            MarkerArray, '/bridge/visuals', found.append,
+            QoSProfile(depth=9, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+
+    subscription = listen()
 
     def wait_until(condition):
         deadline = time.monotonic() + 20.0
@@ -43,8 +47,10 @@ def test_shapes_of_the_scene_before_are_no_longer_read_and_not_shown(
             executor.spin_once(timeout_sec=0.01)
 
     wait_until(lambda: visuals.go_on() < math.inf)
+    listener.destroy_subscription(subscription)
+    wait_until(lambda: not node.count_subscribers('/bridge/visuals'))
     visuals.replace(new)
+    assert visuals.go_on() == math.inf, 'nobody listens'
+    listen()
     wait_until(lambda: visuals.go_on() == math.inf and found)
     assert [each.markers[1].type for each in found] == [Marker.SPHERE]
-    # There is nothing left to do.
-    assert visuals.go_on() == math.inf
