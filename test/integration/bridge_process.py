@@ -101,6 +101,11 @@ class LoggedProcess:
                 pids += map(int, task.read_text(encoding='ascii').split())
         return pids
 
+    @property
+    def is_running(self):
+        """Whether it has not ended."""
+        return self._process.poll() is None
+
     def send(self, number):
         if self._with_children and self._process.poll() is None:
             os.killpg(self.pid, number)

@@ -19,6 +19,7 @@ from bridge_process import LoggedProcess, SECONDS, STARTED
 from builtin_interfaces.msg import Time
 from changes import (
     asked_to_set,
+    BRIDGE,
     listen_to_tf,
     Monitor,
     reload,
@@ -33,6 +34,9 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from rosgraph_msgs.msg import Clock
 from sizes import size
 from slow_file import SlowFile
+from std_srvs.srv import Trigger
+
+from sdf_pose_bridge_interfaces.srv import ConvertRotation
 
 LISTENING = """
 import rclpy
@@ -157,31 +161,58 @@ def test_a_change_without_descriptors_is_read_once_there_are_some(start, file, l
     assert not [line for line in bridge.lines if 'internal error' in line]
 
 
-def data_bytes(pid):
-    """Return how much memory of its own a process has, without what it has only reserved."""
-    status = Path(f'/proc/{pid}/status').read_text(encoding='utf-8')
-    return 1024 * int(status.partition('VmData:')[2].split()[0])
+FAILING = """
+import _testcapi, sys
+from pathlib import Path
+from sdf_pose_bridge.geometry import converted_rotation as rotations
+from sdf_pose_bridge.limited_process import Call
+from sdf_pose_bridge.ros.bridge import main
+
+def then_allocations_fail(function):
+    def call(*arguments, **others):
+        result = function(*arguments, **others)
+        if result and control.exists():
+            first, last = map(int, control.read_text().split())
+            control.unlink()
+            _testcapi.set_nomemory(first, last)
+        return result
+    return call
+
+control = Path(sys.argv.pop(1))
+Call.has_ended = then_allocations_fail(Call.has_ended)
+rotations.converted_rotation = then_allocations_fail(rotations.converted_rotation)
+sys.exit(main())
+"""
+"""The node, in which some allocations fail after a file was read, or a rotation converted."""
 
 
-def test_without_memory_for_what_was_read_the_bridge_goes_on_or_ends(start, file, listener):
-    bridge = start(file)
-    assert reload(listener).success
-    _, hard = resource.prlimit(bridge.pid, resource.RLIMIT_DATA)
-    # The frames need 35 MB.
-    limit = data_bytes(bridge.pid) + 10_000_000
-    resource.prlimit(bridge.pid, resource.RLIMIT_DATA, (limit, hard))
-    replace(file, world(2, extra=''.join(
-        f'<model name="m{i}"><link name="l"/></model>' for i in range(10_000))))
+@pytest.mark.parametrize('service', ['reload', 'convert_rotation'])
+@pytest.mark.parametrize('first', size(range(3, 300, 90), range(0, 3000, 40)))
+def test_after_failing_allocations_the_bridge_answers_or_is_gone(
+        ros_domain, file, tmp_path, listener, service, first):
+    pytest.importorskip('_testcapi', reason='needs a module for tests of Python itself')
+    control = tmp_path / 'control'
+    bridge = LoggedProcess([
+        sys.executable, '-c', FAILING, control, '--ros-args', '-p', f'sdf_file:={file}'])
+
+    def ask(name):
+        types = {'reload': Trigger, 'convert_rotation': ConvertRotation}
+        answer = listener.ask(types[name], f'{BRIDGE}/{name}', types[name].Request())
+        listener.wait(lambda: answer.done() or not bridge.is_running, lambda: f'{name} at {first}')
+
     try:
-        bridge.wait_for_line('there is not enough memory to read the file')
-    except AssertionError:
-        # Libraries of the middleware may end the process.
-        assert bridge.wait_for_end() not in (0, None)
-        return
-    resource.prlimit(bridge.pid, resource.RLIMIT_DATA, (hard, hard))
-    wait_for_x(listener, 2.0)
-    bridge.send(signal.SIGTERM)
-    assert bridge.wait_for_end() == 0
+        wait_for_x(listener, 1.0)
+        for name in ('reload', 'convert_rotation'):
+            ask(name)
+        control.write_text(f'{first} {first + 30}')
+        for name in (service, 'reload', 'convert_rotation'):
+            if bridge.is_running:
+                ask(name)
+        if not bridge.is_running:
+            assert bridge.wait_for_end() == 1
+            assert bridge.lines[-1].endswith('there is not enough memory, so the node ends')
+    finally:
+        bridge.end()
 
 
 # The process that reads files
