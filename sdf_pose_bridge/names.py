@@ -28,6 +28,7 @@ JOINT_SUFFIX = '_joint'
 
 _LONGEST_VALUE = 80
 _LONGEST_PATH = 300
+_MOST_SHOWN = 5
 _LONGEST_MESSAGE = 2000
 _QUOTED = re.compile(r'"([^"]*)"')
 
@@ -98,12 +99,12 @@ def shortened_message(message: str) -> str:
         lambda match: f'"{shortened(match[1])}"', shortened(message, _LONGEST_MESSAGE))
 
 
-def quoted_names(names: Sequence[str], most: int) -> str:
+def quoted_names(names: Sequence[str], most: int = _MOST_SHOWN) -> str:
     """Return the first names for a message, in double quotes, and the number of the others."""
     return listed([f'"{shortened(name)}"' for name in names], most)
 
 
-def listed(texts: Sequence[str], most: int) -> str:
+def listed(texts: Sequence[str], most: int = _MOST_SHOWN) -> str:
     """Return the first texts for a message, and the number of the others."""
     more = f' and {len(texts) - most} more' if len(texts) > most else ''
     return ', '.join(texts[:most]) + more

@@ -19,9 +19,6 @@ MOST_HINTS = 50
 _LONGEST_CHAIN = 10
 """Largest number of includes that an error names on the way to a file."""
 
-_MOST_LINES_NAMED = 5
-"""Largest number of lines that a text names for other problems with the same message."""
-
 _Problem = TypeVar('_Problem', bound=SdfError | SdfWarning)
 
 
@@ -160,7 +157,7 @@ def by_message(problems: Iterable[_Problem]) -> list[tuple[_Problem, str]]:
         groups.setdefault(key, []).append(problem)
     result = []
     for first, *others in groups.values():
-        lines = listed([str(each.place.line) for each in others], _MOST_LINES_NAMED)
+        lines = listed([str(each.place.line) for each in others])
         text = f' (also line{"s" if others[1:] else ""} {lines})' if others else ''
         result.append((first, text))
     return result

@@ -33,7 +33,6 @@ from sdf_pose_bridge.scene.name_scopes import IS_FRAME_KIND, NameScopes
 from sdf_pose_bridge.sdformat.elements import Elements, NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
 
-_MOST_NAMES_SHOWN = 5
 _LONGEST_CYCLE_SHOWN = 12
 
 _ERRORS = {
@@ -269,7 +268,7 @@ class _Builder:
             indices = sorted(index for index, cause in self._unresolved.items() if cause == uri)
             names = [self._scopes.names[index] for index in indices]
             msg = (f'because "{uri}" is missing, what refers to it is left out too: '
-                   f'{quoted_names(names, _MOST_NAMES_SHOWN)}')
+                   f'{quoted_names(names)}')
             self._problems.warning(msg, self._elements.place(indices[0]))
 
     def _break_cycles(

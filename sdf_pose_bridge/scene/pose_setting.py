@@ -36,7 +36,6 @@ from sdf_pose_bridge.sdformat.pose_writing import PoseText
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
 
 _MOST_ATTEMPTS = 4
-_MOST_NAMES_SHOWN = 10
 
 Load: TypeAlias = Callable[[Mapping[str, bytes]], Scene]
 """Reads the scene with other texts instead of some of its files."""
@@ -167,7 +166,7 @@ def _check_instances(
         if other != element and scene.parents[other] >= 0
         and _place_of_pose(scene, other) == place]
     if others:
-        msg = (f'the same pose in the file also places {quoted_names(others, _MOST_NAMES_SHOWN)}, '
+        msg = (f'the same pose in the file also places {quoted_names(others)}, '
                'which would move too')
         raise PoseNotSetError(msg, at)
 

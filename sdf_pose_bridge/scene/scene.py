@@ -250,9 +250,9 @@ class Scene(ReadOnly):
     def _unknown(self, name: str, world: str, found: list[int]) -> UnknownFrameError:
         place = Place(self.path)
         if found:
-            kinds = listed(
-                [f'a {Kind(self.kinds[i]).label} in {self.world_of(i) or "the file"}'
-                 for i in found], _MOST_NAMED)
+            kinds = listed([
+                f'a {Kind(self.kinds[i]).label} in {self.world_of(i) or "the file"}'
+                for i in found])
             msg = f'"{name}" is the name of more than one element: {kinds}'
         else:
             where = f'world "{world}"' if world else 'the file'
@@ -262,9 +262,6 @@ class Scene(ReadOnly):
             msg = f'"{name}" names nothing in {where}{hint}'
         return UnknownFrameError(msg, place)
 
-
-_MOST_NAMED = 10
-"""Largest number of elements with the same name that a message names."""
 
 _FRAMES_AND_ROOTS = frozenset(
     kind for kind in Kind if kind.is_frame or kind in (Kind.WORLD, Kind.ROOT))

@@ -34,8 +34,6 @@ from sdf_pose_bridge.tf.tree import DEFAULT_KINDS, elements_in_model, tf_tree_fr
 NO_LIMIT = 1e16
 """The usual value in URDF and Gazebo for no limit."""
 
-_MOST_NAMES_SHOWN = 10
-
 
 class UrdfMimic(NamedTuple):
     """The joint that a joint follows: ``multiplier * position + offset``."""
@@ -107,7 +105,7 @@ def _model(scene: Scene, name: str) -> int:
     if len(models) != 1:
         names = [scene.names[model] for model in models]
         msg = 'URDF describes one robot, and the file has ' + (
-            f'the models {quoted_names(names, _MOST_NAMES_SHOWN)}; choose one by --model or the '
+            f'the models {quoted_names(names)}; choose one by --model or the '
             'parameter model' if names else 'no model')
         raise UrdfNotMadeError(msg, Place(scene.path))
     return int(models[0])

@@ -22,7 +22,6 @@ from sdf_pose_bridge.tf.tree import TfTree
 
 _ERROR_STYLE = ('color:#e03131;white-space:pre-wrap;overflow-wrap:anywhere;margin:0 1em;'
                 'font-size:0.85em;max-height:30vh;overflow-y:auto')
-_MOST_MOVED = 5
 _COPIED = 'display:block;user-select:all;white-space:pre-wrap;overflow-wrap:anywhere;'
 
 
@@ -115,7 +114,7 @@ def html_of_moved(old: TfTree, new: TfTree, frame: int) -> str:
     """Name the other frames that are elsewhere in a tree of the same frames; empty for none."""
     is_moved = (np.abs(new.poses - old.poses) > 1e-9).any(axis=1)
     names = [old.frame_ids[index] for index in np.flatnonzero(is_moved) if index != frame]
-    text = escaped(quoted_names(names, _MOST_MOVED))
+    text = escaped(quoted_names(names))
     return f'<div class="moved">moves with it: {text}</div>' if names else ''
 
 

@@ -45,7 +45,6 @@ MOST_PIXELS = 1024
 """Largest width and height of a texture; a larger one is made smaller."""
 
 _LARGEST_M = 1e9
-_MOST_LISTED = 5
 _MISSING = (0.88, 0.19, 0.19, 0.5)
 _NAMED_FORMATS = ('.bin', '.mtl', '.jpeg', '.jpg', '.png')
 
@@ -229,7 +228,7 @@ def _parts(
         for mesh, points in surfaces]
     triangle_count = sum(len(part.faces) for part in parts)
     if not parts:
-        listed = quoted_names(sorted(set(names)), _MOST_LISTED)
+        listed = quoted_names(sorted(set(names)))
         msg = (f'it has no part "{submesh}", but {listed}' if names and submesh
                else 'it has no surface')
     # NaN is too large too.

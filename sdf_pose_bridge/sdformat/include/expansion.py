@@ -28,7 +28,7 @@ from sdf_pose_bridge.errors import (
     SdfError,
     UriLookupError,
 )
-from sdf_pose_bridge.names import ROOT_FRAME, shortened
+from sdf_pose_bridge.names import listed, ROOT_FRAME, shortened
 from sdf_pose_bridge.sdformat.documents import Document, document_from_file
 from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.include.merge import merge, ModelByItself, ModelCheck
@@ -51,9 +51,6 @@ from sdf_pose_bridge.sdformat.xml_tree import (
     written_tag,
     XmlElement,
 )
-
-_MOST_TOPS_SHOWN = 5
-"""Largest number of elements at the top of a file that an error names."""
 
 
 class IncludeExpansion:
@@ -206,10 +203,8 @@ class IncludeExpansion:
     def _top(self, include: XmlElement, document: Document) -> XmlElement | None:
         tops = [xml for xml in child_elements(document.root) if xml.tag in TOP_TAGS]
         if len(tops) > 1:
-            names = ', '.join(map(described, tops[:_MOST_TOPS_SHOWN]))
-            rest = len(tops) - _MOST_TOPS_SHOWN
-            msg = (f'{document.path} has more than one element at its top: {names}'
-                   f'{f" and {rest} more" if rest > 0 else ""}')
+            names = listed([described(top) for top in tops])
+            msg = f'{document.path} has more than one element at its top: {names}'
             self._sources.error(ElementIncorrectTypeError, include, msg)
         if tops:
             return min(tops, key=lambda xml: TOP_TAGS.index(str(xml.tag)))

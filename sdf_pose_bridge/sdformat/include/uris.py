@@ -37,9 +37,6 @@ _LONGEST_URI = 500
 _MOST_LEVELS = 4
 """Number of directories around a file in which a model is searched for a message."""
 
-_MOST_SHOWN = 5
-"""Largest number of directories that a message names."""
-
 
 class _Candidate(NamedTuple):
     """A path at which a file may be."""
@@ -164,7 +161,7 @@ class ResourceFinder(NamedTuple):
             os.path.dirname(including_file) or '.']  # noqa: PTH120
         directories = [*dict.fromkeys((
             *beside, *self.search_paths, *self.environment_paths, '.'))]
-        reason = f'it is not in {quoted_names(directories, _MOST_SHOWN)}'
+        reason = f'it is not in {quoted_names(directories)}'
         first, _, rest = name.lstrip('/').partition('/')
         if scheme == 'package':
             reason = f'no package "{first}" is installed, and {reason}'
