@@ -16,6 +16,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import sysconfig
 import tempfile
 import time
 from types import ModuleType
@@ -144,7 +145,6 @@ def _numbers(version: str) -> tuple[int, ...]:
 
 
 def _how_to_install() -> str:
-    import sysconfig
     libraries = ' '.join(f"'{library}'" for library in LIBRARIES)
     is_of_the_system = sys.prefix == sys.base_prefix and Path(
         sysconfig.get_path('stdlib'), 'EXTERNALLY-MANAGED').exists()

@@ -10,6 +10,7 @@ that parses a file is imported here.
 from __future__ import annotations
 
 import enum
+import hashlib
 from pathlib import Path
 from typing import NamedTuple
 
@@ -79,8 +80,6 @@ class LoadedScene(NamedTuple):
 
 def fingerprint_of_scene(scene: Scene) -> bytes:
     """Return bytes that are equal only for scenes with the same names and poses."""
-    # Imported here because it takes 3 ms, and few nodes read anything again.
-    import hashlib
     return hashlib.blake2b(b'\0'.join([
         scene.poses.tobytes(), *(name.encode() for name in scene.names)])).digest()
 
