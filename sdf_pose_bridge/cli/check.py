@@ -46,11 +46,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 
 def run(options: argparse.Namespace) -> int:
-    """
-    Check files.
-
-    :return: exit code: 0 if all files are valid, else 1; if strict, 1 for warnings too.
-    """
+    """Check files; return 0 if all are valid, else 1; if strict, 1 for warnings too."""
     exit_code = 0
     for path in options.files:
         scene, errors, warnings = load_file(path, options, shapes=True)

@@ -68,11 +68,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 
 def run(options: argparse.Namespace) -> int:
-    """
-    Convert the numbers of the arguments or the lines of standard input.
-
-    :return: exit code: 0; 1 if a line was not converted; 2 for a pose and a rotation format.
-    """
+    """Convert arguments or lines; return 0, 1 if one was not converted, 2 for wrong formats."""
     formats = POSE_FORMATS if options.from_format in POSE_FORMATS else ROTATION_FORMATS
     if options.to_format not in (None, *formats):
         kind, other = ('pose', 'rotation') if formats is POSE_FORMATS else ('rotation', 'pose')
@@ -124,11 +120,7 @@ def formats_help() -> str:
 
 
 def format_with_unit(name: str, angle_unit: Unit) -> Format:
-    """
-    Return a format; for degrees the one that has them instead of radians.
-
-    :raises CommandError: for degrees, if there is only one with radians.
-    """
+    """Return a format; for degrees the one that has them, or raise a CommandError."""
     formats = {**POSE_FORMATS, **ROTATION_FORMATS}
     if angle_unit is DEGREES and name == 'ur_pose':
         msg = 'ur_pose is always in radians, without --degrees'

@@ -55,11 +55,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 
 def run(options: argparse.Namespace) -> int:
-    """
-    Compare two files.
-
-    :return: exit code: 0 if there is no difference, 1 if there is one, 2 if a file has an error.
-    """
+    """Compare two files; return 0 for no difference, 1 for one, 2 if a file has an error."""
     (old, errors, warnings), (new, more_errors, more_warnings) = (
         load_file(path, options) for path in (options.old, options.new))
     errors, warnings = errors + more_errors, warnings + more_warnings

@@ -73,12 +73,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 
 def run(options: argparse.Namespace) -> int:
-    """
-    Draw the graph of a file.
-
-    :return: exit code: 0.
-    :raises CommandError: if it cannot be written or drawn.
-    """
+    """Draw the graph of a file; return 0."""
     scene = scene_of(options.files[0], options)
     _write(dot_from_scene(scene, options.kinds, options.model), options.output)
     return 0

@@ -92,11 +92,7 @@ def scene_from_file(
 def load_file(
     path: str, options: argparse.Namespace, *, shapes: bool = False,
 ) -> tuple[Scene | None, tuple[SdfError, ...], tuple[SdfWarning, ...]]:
-    """
-    Load a file as :func:`scene_from_file` does.
-
-    :return: the scene, or None if the file is not valid; the errors and the warnings.
-    """
+    """Load a file as :func:`scene_from_file`; return the scene or None, errors and warnings."""
     try:
         scene = scene_from_file(path, options, shapes=shapes)
     except SdfError as error:
@@ -105,11 +101,7 @@ def load_file(
 
 
 def scene_of(path: str, options: argparse.Namespace, *, shapes: bool = False) -> Scene:
-    """
-    Load a file as :func:`scene_from_file` does, and print its warnings to standard error.
-
-    :raises SdfError: if the file is not valid.
-    """
+    """Load a file as :func:`scene_from_file`, and print its warnings to standard error."""
     scene = scene_from_file(path, options, shapes=shapes)
     print_problems((), scene.warnings, sys.stderr)
     return scene

@@ -54,11 +54,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 
 def run(options: argparse.Namespace) -> int:
-    """
-    Print the poses of files; continue after an invalid file.
-
-    :return: exit code: 0 if all files are valid, else 1.
-    """
+    """Print the poses of files; return 0 if all files are valid, else 1."""
     return print_frames(
         options, 'elements', ('file', 'world', 'kind', 'name', *Pose._fields), _elements)
 

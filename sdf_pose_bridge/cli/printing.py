@@ -94,11 +94,7 @@ class CommandError(Exception):
 
 
 def write_text(text: str, path: Path | None) -> None:
-    """
-    Write a file; without a path, the standard output.
-
-    :raises CommandError: if the file cannot be written.
-    """
+    """Write a file, or the standard output if there is no path; may raise a CommandError."""
     if path is None:
         print(text, end='')
         return

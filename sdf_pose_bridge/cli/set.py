@@ -75,14 +75,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 
 def run(options: argparse.Namespace) -> int:
-    """
-    Set a pose.
-
-    :return: exit code: 0.
-    :raises CommandError: for the standard input, and for numbers that look like another unit.
-    :raises PoseFormatError: if the numbers are wrong.
-    :raises SdfError: if the pose cannot be written into the file.
-    """
+    """Write a pose into the file that places a frame; return 0."""
     if options.files[0] == STANDARD_INPUT:
         msg = 'the standard input cannot be changed; name a file'
         raise CommandError(msg)

@@ -64,11 +64,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 
 def run(options: argparse.Namespace) -> int:
-    """
-    Print the trees of files; continue after an invalid file.
-
-    :return: exit code: 0 if all files are valid, else 1.
-    """
+    """Print the trees of files; return 0 if all files are valid, else 1."""
     options.kinds = options.kinds or (SHOWN_KINDS if options.scope else DEFAULT_KINDS)
     return print_frames(
         options, 'frames', ('file', 'name', 'kind', 'parent', *Pose._fields, 'note'),

@@ -38,13 +38,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 
 def run(options: argparse.Namespace) -> int:
-    """
-    Write a model of a file as URDF.
-
-    :return: exit code: 0.
-    :raises CommandError: if it cannot be written.
-    :raises SdfError: if the file is not valid, or no URDF can be made of it.
-    """
+    """Write a model of a file as URDF; return 0."""
     scene = scene_of(options.files[0], options, shapes=True)
     urdf = urdf_from_scene(
         scene, model=options.model, kinds=options.kinds, frame_names=options.frame_names,

@@ -86,12 +86,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 
 def run(options: argparse.Namespace) -> int:
-    """
-    Show a file.
-
-    :return: exit code: 0.
-    :raises CommandError: if it cannot be shown or written.
-    """
+    """Show a file, or write it; return 0."""
     if options.files[0] == STANDARD_INPUT and options.edit:
         msg = 'the standard input cannot be changed, as --edit would; name a file'
         raise CommandError(msg)
