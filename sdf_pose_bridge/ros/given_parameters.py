@@ -46,6 +46,14 @@ _LARGEST_DEPTH = 2**31 - 1
 _POLICIES = {
     'reliability': ReliabilityPolicy, 'durability': DurabilityPolicy, 'history': HistoryPolicy}
 
+_OVERRIDABLE: Mapping[str, Mapping[str, Sequence[str]]] = {
+    'joint_states': {'subscription': ('reliability', 'durability')},
+    'parameter_events': {},
+    'tf': {'publisher': ('history', 'depth', 'reliability')},
+    'tf_static': {'publisher': ('history', 'depth', 'reliability')},
+}
+"""The policies that parameters can override, for the topics of robot_state_publisher."""
+
 _NAMES_OF_TYPES = {
     Parameter.Type.STRING: 'a string', Parameter.Type.BOOL: 'true or false',
     Parameter.Type.INTEGER: 'an integer', Parameter.Type.DOUBLE: 'a number',
@@ -58,12 +66,14 @@ _NAMES_OF_TYPES = {
 
 def settings_from_node(
     node: Node, defaults: Mapping[str, Value] | None = None, file: str = '',
+    advice: str = '',
 ) -> Settings:
     """
     Declare all parameters on a node with their given values, and convert these.
 
     :param defaults: defaults of parameters, where they differ from the declared defaults.
     :param file: the file to publish, unless parameters name a file or a text.
+    :param advice: the message if there is neither a file nor a text.
     :raises SettingsError: if a value has the wrong type or is not allowed.
     """
     given = _given_parameters(node)
@@ -74,7 +84,8 @@ def settings_from_node(
     sentences = _sentences_about_overrides(given)
     if sentences:
         raise SettingsError(sentences)
-    settings = changed_settings(Settings({}), parameters, node=node.get_fully_qualified_name())
+    settings = changed_settings(
+        Settings({}), parameters, node=node.get_fully_qualified_name(), advice=advice)
     for parameter in parameters:
         _declare(node, parameter)
     return settings
@@ -92,7 +103,7 @@ def settings_from_values(values: Mapping[str, Any]) -> Settings:
 
 
 def changed_settings(
-    settings: Settings, parameters: Iterable[Parameter], *, node: str = '',
+    settings: Settings, parameters: Iterable[Parameter], *, node: str = '', advice: str = '',
 ) -> Settings:
     """
     Convert new values of parameters.
@@ -101,6 +112,7 @@ def changed_settings(
         are not declared here are ignored.
     :param node: the full name of the node, at its start; messages show how to write a value on the
         command line then.
+    :param advice: the message if there is neither a file nor a text, at its start.
     :raises SettingsError: if a value has the wrong type or is not allowed.
     """
     values = dict(settings.values)
@@ -118,11 +130,9 @@ def changed_settings(
             'other one to an empty string')
     elif sources == ['', '']:
         sentences.insert(
-            0, 'parameter sdf_file is not set; name the file to publish: --ros-args -p '
-            'sdf_file:=cell.sdf after "ros2 run ...", sdf_file:=cell.sdf after "ros2 launch '
-            '..."; or set robot_description to its text'
-            + (f'; in a parameter file, they are below the name of this node, {node}' if node
-               else ''))
+            0, f'{advice}; in a parameter file, they are below the name of this node, {node}'
+            if advice else
+            'parameter sdf_file is not set, nor is robot_description; set one of them')
     elif sources[1] and '<' not in sources[1]:
         sentences.insert(
             0, f'parameter robot_description is "{shortened(sources[1])}", which is no text of '
@@ -141,13 +151,31 @@ def warnings_about_unknown_parameters(
     :param known_elsewhere: names of parameters of other nodes, which cause no warning. If there
         are any, names that resemble no name of a parameter are left out, too.
     """
+    given = _given_parameters(node)
     hints = {
-        name: hint_from_names(name, DECLARATIONS) for name in _given_parameters(node)
+        name: hint_from_names(name, DECLARATIONS) for name in given
         if name not in DECLARATIONS and not node.has_parameter(name)
         and not name.startswith(QOS_OVERRIDES) and name not in known_elsewhere}
     return [
         f'there is no parameter "{name}", so it has no effect{hint}'
-        for name, hint in hints.items() if hint or not known_elsewhere]
+        for name, hint in hints.items() if hint or not known_elsewhere
+    ] + [
+        f'parameter {name} has no effect here; {reason}'
+        for name in given if (reason := _reason_without_effect(name))]
+
+
+def _reason_without_effect(name: str) -> str:
+    """Return why the quality of service of a topic cannot be overridden; empty if it can."""
+    parts = name.removeprefix(QOS_OVERRIDES).rsplit('.', 2)
+    topic = parts[0]
+    last = topic.rpartition('/')[2]
+    if not name.startswith(QOS_OVERRIDES) or len(parts) != 3 or last not in _OVERRIDABLE or (
+            parts[2] in _OVERRIDABLE[last].get(parts[1], ())):
+        return ''
+    possible = [
+        f'{each} of its {known}' for known, policies in _OVERRIDABLE[last].items()
+        for each in policies]
+    return f'of {topic}, one can override {", ".join(possible) or "nothing"}'
 
 
 class ParameterServices:

@@ -60,6 +60,8 @@ class Program(NamedTuple):
     defaults: Mapping[str, Value]
     """The defaults of parameters that differ from the declared defaults."""
     usage: str
+    advice: str
+    """The message if there is neither a file nor a text."""
     takes_file: bool = False
     """Whether the command line may name a file, before the arguments of ROS."""
     known_elsewhere: Collection[str] = ()
@@ -73,7 +75,10 @@ Publish every frame of an SDFormat file on TF and on topics.
 
 usage: ros2 run sdf_pose_bridge bridge --ros-args -p sdf_file:=cell.sdf [-p name:=value ...]
 
-"ros2 param describe /sdf_pose_bridge <name>" explains each parameter of the running node.""")
+"ros2 param describe /sdf_pose_bridge <name>" explains each parameter of the running node.""",
+    'parameter sdf_file is not set; name the file to publish: --ros-args -p sdf_file:=cell.sdf '
+    'after "ros2 run ...", sdf_file:=cell.sdf after "ros2 launch ..."; or set robot_description '
+    'to its text')
 
 ROBOT_STATE_PUBLISHER = Program(
     'robot_state_publisher',
@@ -93,7 +98,10 @@ usage: ros2 run sdf_pose_bridge robot_state_publisher [robot.urdf] [--ros-args -
 
 The text is the parameter robot_description. Without it, the file is robot.urdf or the parameter
 sdf_file. "ros2 param describe /robot_state_publisher <name>" explains each parameter of
-the running node.""", takes_file=True, known_elsewhere=('use_tf_static',))
+the running node.""",
+    'parameter robot_description is not set; set it to the text of URDF or SDFormat, or name a '
+    'file: robot.urdf after "ros2 run ...", or the parameter sdf_file',
+    takes_file=True, known_elsewhere=('use_tf_static',))
 
 PROGRAMS = {'bridge': BRIDGE, 'robot_state_publisher': ROBOT_STATE_PUBLISHER}
 """The executables by their names."""
@@ -150,7 +158,7 @@ def _exit_code_from_node(
 ) -> int:
     _log_warnings(node, warnings_about_unknown_parameters(node, program.known_elsewhere))
     try:
-        settings = settings_from_node(node, program.defaults, file)
+        settings = settings_from_node(node, program.defaults, file, program.advice)
         publishers, request = Publishers(node), settings.load_request
         with reader.calling(request, loaded_scene, request) as call:
             publishers.opened(TF_STATIC)

@@ -102,11 +102,10 @@ def test_all_wrong_values_are_named(make_node):
         'sdf_file', 'frame_names', 'kinds', 'watch']
 
 
-def test_without_a_file_the_sentence_says_how_to_name_one(make_node):
-    with pytest.raises(SettingsError) as refusal:
-        settings_from_node(make_node('bridge'))
-    assert '-p sdf_file:=cell.sdf after "ros2 run' in str(refusal.value)
-    assert 'sdf_file:=cell.sdf after "ros2 launch' in str(refusal.value)
+def test_without_a_file_the_advice_of_the_program_and_the_name_for_a_parameter_file_are_told(
+        make_node):
+    with pytest.raises(SettingsError, match=r'^advice; in .* name of this node, /bridge'):
+        settings_from_node(make_node('bridge'), advice='advice')
 
 
 def test_settings_of_values_without_a_node(settings):
@@ -147,11 +146,6 @@ def test_a_wrong_new_value_is_named_with_its_rule(settings, name, value, sentenc
 def test_a_path_is_no_text():
     with pytest.raises(SettingsError, match=r'"a\.sdf", which is no text .* takes a path'):
         settings_from_values({'robot_description': 'a.sdf'})
-
-
-def test_the_name_for_a_parameter_file_is_told(make_node):
-    with pytest.raises(SettingsError, match='below the name of this node, /bridge'):
-        settings_from_node(make_node('bridge'))
 
 
 def test_a_change_to_no_value_is_refused(settings):
@@ -324,3 +318,26 @@ def test_a_value_that_no_policy_has_ends_the_start(make_node, policy, value, rul
         'bridge', '-p', 'sdf_file:=a.sdf', '-p', f'qos_overrides./tf.publisher.{policy}:={value}')
     with pytest.raises(SettingsError, match=f'.{policy} is {value}; it must be {rule}'):
         settings_from_node(node)
+
+
+@pytest.mark.parametrize(('name', 'possible'), [
+    ('/joint_states.subscription.history',
+     'reliability of its subscription, durability of its subscription'),
+    ('/r1/tf.publisher.durability',
+     'history of its publisher, depth of its publisher, reliability of its publisher'),
+    ('/parameter_events.publisher.depth', 'nothing'),
+])
+def test_an_override_without_effect_is_told(make_node, name, possible):
+    name = f'qos_overrides.{name}'
+    (warning,) = warnings_about_unknown_parameters(
+        make_node('bridge', '-p', 'sdf_file:=a.sdf', '-p', f'{name}:=1'))
+    assert warning.startswith(f'parameter {name} has no effect here; of /')
+    assert warning.endswith(f', one can override {possible}')
+
+
+@pytest.mark.parametrize('name', [
+    '/joint_states.subscription.reliability', '/tf_static.publisher.depth',
+    '/scan.subscription.depth', '/tf', 'x'])
+def test_other_overrides_are_not_told(make_node, name):
+    assert warnings_about_unknown_parameters(make_node(
+        'bridge', '-p', 'sdf_file:=a.sdf', '-p', f'qos_overrides.{name}:=1')) == []
