@@ -100,6 +100,9 @@ def _doubts_about_shapes(scene: Scene, resource_paths: Sequence[str]) -> tuple[S
         if part != uri or finder.file_from_uri(uri, file) is None:
             missing[part, file].append(uri)
     for (folder, file), uris in missing.items():
+        if not problems.keeps_warnings():
+            problems.count_more(0, 1)
+            continue
         others = f', like {len(uris) - 1} more of "{shortened(folder)}"' if uris[1:] else ''
         problems.warning(
             f'the mesh "{shortened(uris[0])}" is not found{others}: '
