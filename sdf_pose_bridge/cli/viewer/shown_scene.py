@@ -87,7 +87,7 @@ class ShownScene:
         return np.take(is_end, ends_from_pointers(np.where(is_end, -1, parents)))
 
     def at(self, positions: Mapping[str, float], scene: Scene | None = None) -> ShownScene:
-        """Return the scene at positions of its joints; ``scene`` is used instead of the loaded one."""
+        """Return the scene at positions of its joints; ``scene`` replaces the loaded one."""
         shown = copy.copy(self)
         shown.positions, shown.scene = positions, scene_at_positions(
             scene or self.loaded, positions)
