@@ -52,6 +52,9 @@ _FAULTS = {
         'the value of an attribute holds "<"; a quotation mark before it may be missing',
     'AttValue: " or \' expected': 'the value of an attribute is not in quotation marks',
     'Attribute (.+) redefined': r'the attribute \1 is given twice',
+    r'Excessive depth in document: (\d+).*': r'elements are nested more than \1 deep',
+    '.*([Hh]uge (text|input)|too long|Buffer size limit).*':
+        'a text or a value is longer than 10 MB',
 }
 """Plain messages, by regular expressions for the messages of libxml2."""
 
@@ -63,6 +66,9 @@ _IGNORED_ERRORS = frozenset({
 
 _MOST_ERRORS = 100
 """Releases 2.11 to 2.13 of libxml2 report no more errors."""
+
+_LONGEST_TEXT = 10_000_000
+"""Longer ones are errors of libxml2, which some releases report as a lack of memory."""
 
 _LAST_LINE = 65_535
 """libxml2 reports this line for all elements in later lines."""
@@ -220,7 +226,8 @@ def _parsed(text: bytes, path: str) -> XmlElement:
     with contextlib.suppress(etree.XMLSyntaxError):
         root = etree.fromstring(text, parser)
     errors = [entry for entry in parser.error_log if entry.type_name not in _IGNORED_ERRORS]
-    if any(entry.type_name == 'ERR_NO_MEMORY' for entry in errors):
+    if any(entry.type_name == 'ERR_NO_MEMORY' for entry in errors) and (
+            max(map(len, text.split(b'<'))) <= _LONGEST_TEXT):
         raise MemoryError
     if errors:
         fault = errors[0].message.strip()

@@ -179,16 +179,22 @@ def test_nothing_is_read_from_the_network():
             server.accept()
 
 
-@pytest.mark.parametrize('text', [
-    '<sdf version="1.9">' + '<model name="m">' * 1000 + '</model>' * 1000 + '</sdf>',
-    link_with(f'<a>{"<a>" * 300}{"</a>" * 300}</a>'),
-    link_with(f'<a>{"a" * 10_500_000}</a>'),
+@pytest.mark.parametrize(('text', 'fault'), [
+    ('<sdf version="1.9">' + '<model name="m">' * 1000 + '</model>' * 1000 + '</sdf>',
+     'elements are nested more than 256 deep'),
+    (link_with(f'<a>{"<a>" * 300}{"</a>" * 300}</a>'), 'elements are nested more than 256 deep'),
+    (link_with(f'<a>{"a" * 10_500_000}</a>'), 'a text or a value is longer than 10 MB'),
+    (link_with(f'<a b="{"a" * 10_500_000}"/>'), 'a text or a value is longer than 10 MB'),
     # A search that backtracks would take minutes for these.
-    model_file(LINK) + '<!--' * 20_000, model_file(LINK + '<!-- -- -->' + '<!--' * 20_000),
-    model_file(LINK, attributes='a' * 100_000),
-], ids=['models', 'other elements', 'a text', 'comments', 'comments and hyphens', 'an attribute'])
-def test_too_deep_or_too_long_content_is_refused(text):
-    assert codes_of(text) == ['FILE_READ']
+    (model_file(LINK) + '<!--' * 20_000, ''),
+    (model_file(LINK + '<!-- -- -->' + '<!--' * 20_000), ''),
+    (model_file(LINK, attributes='a' * 100_000), ''),
+], ids=['models', 'other elements', 'a text', 'a value', 'comments', 'comments and hyphens',
+        'an attribute'])
+def test_too_deep_or_too_long_content_is_refused(text, fault):
+    error = only_error(text)
+    assert error.code == 'FILE_READ'
+    assert fault in error.message
 
 
 # Well-formedness that libsdformat does not need
