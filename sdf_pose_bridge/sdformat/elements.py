@@ -239,12 +239,14 @@ class ElementsBuilder:
             rows = []
             for row, text in enumerate(texts):
                 try:
-                    rows.append(pose_numbers_from_text(text, pose_format))
+                    pose, doubt = pose_numbers_from_text(text, pose_format)
                 except PoseTextError as error:
                     place = table.place_of_pose(indices[row])
                     problems.error(ElementInvalidError(str(error), place))
-                    rows.append(pose_numbers_from_text('', pose_format))
-                    texts[row] = ''
+                    pose, doubt = pose_numbers_from_text('', pose_format)
+                rows.append(pose)
+                if doubt:
+                    problems.warning(doubt, table.place_of_pose(indices[row]))
             numbers = np.array(rows)
             table.poses[indices] = poses_from_numbers(numbers, pose_format)
             for row, doubt in pose_doubts(texts, numbers, pose_format):

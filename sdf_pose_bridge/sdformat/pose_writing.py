@@ -26,13 +26,14 @@ from sdf_pose_bridge.sdformat.poses import (
     PoseFormat,
     PoseTextError,
 )
+from sdf_pose_bridge.sdformat.values import number_from_word, words_of
 from sdf_pose_bridge.sdformat.versions import Version, version_from_text
 from sdf_pose_bridge.sdformat.xml_file import START_TAG, xml_from_bytes
 from sdf_pose_bridge.sdformat.xml_tree import text_of, written_tag
 
 _FIRST_WITH_POSE = Version(1, 4)
 _TEXT_AFTER_COMMENTS = re.compile(rb'(?:\s*<!--.*?-->)*([^<]*)', re.DOTALL)
-_WORD = re.compile(rb'[^ \t\n\r,]+')
+_WORD = re.compile(rb'[^ \t\n\r]+')
 _INDENTATION = re.compile(rb'\s*?(\r?\n[ \t]*)?(?=<)')
 _SAME_ROTATION = 1e-12
 _NO_BREAKS = bytes.maketrans(b'\r\n', b'  ')
@@ -186,8 +187,7 @@ class PoseText:
             text = _TEXT_AFTER_COMMENTS.match(self._text, end + 1)
             assert text is not None
             words = list(_WORD.finditer(self._text, *text.span(1)))
-        if [word[0].decode() for word in words] != (
-                text_of(self._elements[element]).replace(',', ' ').split()):
+        if [word[0].decode() for word in words] != words_of(text_of(self._elements[element])):
             msg = 'the numbers of the pose are not written as plain text'
             raise PoseNotSetError(msg, self._place(element))
         return words
@@ -217,7 +217,7 @@ def _words_from_pose(
             (angle * unit, tolerance / 4.0 * unit) for angle in rpy_from_quaternion(pose[3:])]
     words = [_shortest(*each) for each in numbers]
     for index, (old, (number, most)) in enumerate(zip(old_words, numbers, strict=False)):
-        if abs(float(old) - number) <= most or (keeps_rotation and index >= 3):
+        if abs(number_from_word(old)[0] - number) <= most or (keeps_rotation and index >= 3):
             words[index] = old
     return words
 

@@ -4,9 +4,8 @@
 Read the texts of ``<pose>``: x y z and a unit quaternion.
 
 The attributes ``rotation_format`` and ``degrees`` define the numbers (``pose.sdf`` of
-http://sdformat.org/spec). Only decimal numbers are accepted, unlike by C's ``strtod``: no
-``0x10``, no ``1.5abc``. A comma may follow each number, as in ``1, 2, 3``, but does not separate
-numbers. Quaternions are normalised, unlike by libsdformat.
+http://sdformat.org/spec). White space separates them, and the rest of a word behind a number is
+ignored. Quaternions are normalised, unlike by libsdformat.
 """
 
 from __future__ import annotations
@@ -23,11 +22,13 @@ from sdf_pose_bridge.geometry.poses import Pose, PoseArray
 from sdf_pose_bridge.geometry.rotations import Floats, quaternion_from_rpy, rpy_from_quaternion
 from sdf_pose_bridge.sdformat.values import (
     boolean_from_text,
-    DECIMAL,
+    doubt_about_numbers,
     is_representable,
+    number_from_word,
     plain_numbers_from_text,
+    words_of,
 )
-from sdf_pose_bridge.sdformat.xml_tree import attribute_of, WHITE_SPACE, XmlElement
+from sdf_pose_bridge.sdformat.xml_tree import attribute_of, XmlElement
 
 _SHORTEST_QUATERNION = 1e-9
 """A quaternion with a smaller norm has no meaningful direction."""
@@ -38,7 +39,7 @@ _LARGEST_NORM = 1e150
 _NORM_TOLERANCE = 1e-3
 """A quaternion whose norm differs more from 1 is probably a mistake."""
 
-_DECIMAL_NUMBER = re.compile(rf'[+-]?{DECIMAL}')
+_BEGINNING_OF_NUMBER = re.compile(r'[+-]?\.?[0-9]')
 
 
 class PoseFormat(NamedTuple):
@@ -82,7 +83,7 @@ def pose_from_text(text: str, pose_format: PoseFormat) -> Sequence[float]:
     :return: x y z in metres, unit quaternion x y z w.
     :raises PoseTextError: if it is not a pose.
     """
-    numbers = np.array([pose_numbers_from_text(text, pose_format)])
+    numbers = np.array([pose_numbers_from_text(text, pose_format)[0]])
     pose: list[float] = poses_from_numbers(numbers, pose_format)[0].tolist()
     return pose
 
@@ -98,16 +99,19 @@ def text_from_pose(pose: Pose) -> str:
         repr(number if is_representable('1', number) else 0.0) for number in numbers)
 
 
-def pose_numbers_from_text(text: str, pose_format: PoseFormat) -> Sequence[float]:
+def pose_numbers_from_text(text: str, pose_format: PoseFormat) -> tuple[Sequence[float], str]:
     """
     Read the numbers of a text.
 
-    :return: x y z roll pitch yaw, or x y z qx qy qz qw; a quaternion that is too large is scaled.
+    :return: x y z roll pitch yaw, or x y z qx qy qz qw, of which a quaternion that is too large is
+        scaled; and a message if they are not the numbers that are written, else empty.
     :raises PoseTextError: if the text is not a pose.
     """
-    numbers = plain_numbers_from_text(text)
+    numbers, doubt = plain_numbers_from_text(text), ''
     if len(numbers) != (7 if pose_format.is_quaternion else 6):
         numbers = _numbers_from_words(text, pose_format)
+        doubt = doubt_about_numbers(text, numbers)
+        doubt = f'the pose "{_shown(text)}" {doubt}' if doubt else ''
     if pose_format.is_quaternion:
         norm = math.hypot(*numbers[3:])
         if norm < _SHORTEST_QUATERNION or math.isinf(norm):
@@ -116,26 +120,29 @@ def pose_numbers_from_text(text: str, pose_format: PoseFormat) -> Sequence[float
             msg = f'the quaternion of the pose "{_shown(text)}" is {rule}'
             raise PoseTextError(msg)
         if norm > _LARGEST_NORM:
-            return [*numbers[:3], *(number / norm for number in numbers[3:])]
-    return numbers
+            numbers = [*numbers[:3], *(number / norm for number in numbers[3:])]
+    return numbers, doubt
 
 
 def _numbers_from_words(text: str, pose_format: PoseFormat) -> Sequence[float]:
     layout = 'x y z qx qy qz qw' if pose_format.is_quaternion else 'x y z roll pitch yaw'
     count = len(layout.split())
-    words = _words(text) or '0 0 0 0 0 0 1'.split()[:count]
-    plain_words = [word.removesuffix(',') for word in words]
-    for word, plain in zip(words[:count], plain_words, strict=False):
-        is_decimal = _DECIMAL_NUMBER.fullmatch(plain) is not None
-        if not is_decimal or not is_representable(plain, float(plain)):
-            rule = 'beyond the range of a double' if is_decimal else 'not a finite decimal number'
+    words = words_of(text) or '0 0 0 0 0 0 1'.split()[:count]
+    numbers: list[float] = []
+    for word in words[:count]:
+        read = number_from_word(word)
+        if not read or not math.isfinite(read[0]):
+            is_number = not read and _BEGINNING_OF_NUMBER.match(word)
+            rule = 'beyond the range of a double' if is_number else 'not a finite number'
             msg = f'"{word[:80]}" in the pose "{_shown(text)}" is {rule}'
             raise PoseTextError(msg)
+        numbers += read
     if len(words) != count:
-        hint = '' if len(words) != 7 else '; did you mean rotation_format="quat_xyzw"?'
+        hint = '; did you mean rotation_format="quat_xyzw"?' if len(words) == 7 else (
+            '; separate them by blanks' if ',' in text else '')
         msg = f'a pose has {count} values ({layout}), "{_shown(text)}" has {len(words)}{hint}'
         raise PoseTextError(msg)
-    return [*map(float, plain_words)]
+    return numbers
 
 
 def pose_doubts(
@@ -156,10 +163,6 @@ def pose_doubts(
         doubt = 'the angles of the pose "{}" are radians; did you mean degrees="true"?'
     for row in np.flatnonzero(is_doubtful).tolist():
         yield row, doubt.format(_shown(texts[row]))
-    for row, text in enumerate(texts):
-        if ',' in text:
-            yield row, (f'the commas in the pose "{_shown(text)}" are ignored; only white space '
-                        'separates numbers')
 
 
 def poses_from_numbers(numbers: Floats, pose_format: PoseFormat) -> PoseArray:
@@ -179,10 +182,6 @@ def poses_from_numbers(numbers: Floats, pose_format: PoseFormat) -> PoseArray:
     return np.hstack((numbers[:, :3], quaternions))
 
 
-def _words(text: str) -> list[str]:
-    return re.findall(f'[^{WHITE_SPACE}]+', text)
-
-
 def _shown(text: str) -> str:
-    shown = ' '.join(_words(text))
+    shown = ' '.join(words_of(text))
     return shown if len(shown) <= 80 else shown[:77] + '...'

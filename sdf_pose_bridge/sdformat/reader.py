@@ -309,10 +309,11 @@ class _Reader:
                     msg = f'{name}="{text}" of <{written_tag(xml)}> is empty'
                     self._sources.error(AttributeInvalidError, xml, msg)
             elif rule.choice is None:
-                fault, _ = judged_value(text.strip(), rule)
+                fault, doubt = judged_value(value, rule)
                 if fault:
-                    msg = f'{name}="{text.strip()}" {fault}'
-                    self._sources.error(AttributeInvalidError, xml, msg)
+                    self._sources.error(AttributeInvalidError, xml, f'{name}="{value}" {fault}')
+                elif doubt:
+                    self._sources.warning(xml, f'{name}="{value}" of <{written_tag(xml)}> {doubt}')
             elif choice is not None and (fault := choice_fault(value, choice)):
                 error = ElementInvalidError if definition.kind is None else AttributeInvalidError
                 hint = hint_from_names(value, choice.texts) if (
@@ -340,9 +341,12 @@ class _Reader:
             msg = f'<{written_tag(xml)}> is empty; it must have a value'
             self._sources.error(ElementInvalidError, xml, msg)
         try:
-            pose_numbers_from_text(text, pose_format)
+            _, doubt = pose_numbers_from_text(text, pose_format)
         except PoseTextError as error:
             self._sources.error(ElementInvalidError, xml, str(error))
+        else:
+            if doubt:
+                self._sources.warning(xml, doubt)
         if parent != NO_ELEMENT:
             self._sources.warning(xml, 'a second <pose> is ignored; the first one counts')
 

@@ -24,14 +24,14 @@ from sdf_pose_bridge.sdformat.xml_tree import (
     XmlElement,
 )
 
-DECIMAL = r'(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?'
+_DECIMAL = r'(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?'
 """A decimal number without its sign."""
 _C_NUMBER = re.compile(
-    rf'[+-]?(?:0x(?:[0-9a-f]+\.?[0-9a-f]*|\.[0-9a-f]+)(?:p[+-]?[0-9]+)?|{DECIMAL}|inf(?:inity)?|nan)',
+    rf'[+-]?(?:0x(?:[0-9a-f]+\.?[0-9a-f]*|\.[0-9a-f]+)(?:p[+-]?[0-9]+)?|{_DECIMAL}|inf(?:inity)?|nan)',
     re.IGNORECASE)
 """The beginning of a word that C's ``strtod`` reads; it drops the rest."""
 _C_INTEGER = re.compile(r'0x[0-9a-f]+|[+-]?[0-9]+', re.IGNORECASE)
-_STREAM_NUMBER = re.compile(rf'[{WHITE_SPACE}]*([+-]?{DECIMAL})')
+_STREAM_NUMBER = re.compile(rf'[{WHITE_SPACE}]*([+-]?{_DECIMAL})')
 """The part that a C++ stream reads; it leaves the rest for the next number."""
 _STREAM_INTEGERS = re.compile(r'([+-]?[0-9]+)(\s+[+-]?[0-9]+|[+-][0-9]+)', re.ASCII)
 """Two integers, as a C++ stream reads them."""
@@ -122,17 +122,31 @@ def judged_value(text: str, rule: Item) -> tuple[str, str]:
                   else f'from {rule.minimum:g} to {rule.maximum:g}')
         return f'must be {limits}', ''
     is_integer = value_type.is_integer and _C_INTEGER.fullmatch(stripped)
-    return '', '' if is_integer or _are_numbers_as_written(stripped, numbers) else (
-        f'is read as {" ".join(map(repr, numbers))}')
+    return '', '' if is_integer or not numbers else doubt_about_numbers(stripped, numbers)
 
 
-def _are_numbers_as_written(text: str, numbers: Sequence[float]) -> bool:
+def doubt_about_numbers(text: str, numbers: Sequence[float]) -> str:
+    """
+    Return the numbers that were read from a text, as a part of a sentence behind it.
+
+    :return: empty if they are those that are written, or if the text is blank.
+    """
+    words = words_of(text)
     try:
-        words = [*map(float, text.split())] if numbers else []
+        written = [*map(float, words)]
     except ValueError:
-        return False
-    return len(words) == len(numbers) and all(
-        word == number or math.isnan(word) for word, number in zip(words, numbers, strict=True))
+        written = []
+    if not words or (len(written) == len(numbers) and all(
+            word == number or math.isnan(word)
+            for word, number in zip(written, numbers, strict=True))):
+        return ''
+    shown = ' '.join(repr(number).removesuffix('.0') for number in numbers)
+    return f'is read as {shown}, as by Gazebo'
+
+
+def words_of(text: str) -> list[str]:
+    """Split a text at white space, of which SDFormat has less than Python."""
+    return re.findall(f'[^{WHITE_SPACE}]+', text)
 
 
 def is_representable(text: str, number: float) -> bool:
@@ -196,7 +210,7 @@ def numbers_from_text(text: str, value_type: ValueType) -> Sequence[float]:
     if value_type in _INTEGER_RANGES:
         return _integer(stripped, value_type)
     if value_type in (ValueType.NUMBER, ValueType.FLOAT, ValueType.COLOR):
-        words = [stripped] if count == 1 else stripped.split()
+        words = [stripped] if count == 1 else words_of(stripped)
         numbers = [number for word in words for number in number_from_word(word)]
         return numbers if len(numbers) == len(words) else ()
     return _streamed_numbers(stripped, count)

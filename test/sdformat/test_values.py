@@ -199,10 +199,20 @@ def test_numbers_as_libsdformat_reads_them(text, value_type, numbers):
     assert list(numbers_from_text(text, value_type)) == numbers
 
 
-def test_numbers_that_are_read_otherwise_have_a_warning():
-    scene = load_text(box('1.22.28 0.26'))
-    assert [warning.message for warning in scene.warnings] == [
-        '"1.22.28 0.26" of <size> is read as 1.22 0.28 0.26']
+@pytest.mark.parametrize(('text', 'warning'), [
+    (box('1.22.28 0.26'), '"1.22.28 0.26" of <size> is read as 1.22 0.28 0.26, as by Gazebo'),
+    (link_with('<inertial><mass>1,5</mass></inertial>'),
+     '"1,5" of <mass> is read as 1, as by Gazebo'),
+    (link_with('<pose>1.5m 0 0 0 0 0</pose>'),
+     'the pose "1.5m 0 0 0 0 0" is read as 1.5 0 0 0 0 0, as by Gazebo'),
+    (link_with('<pose>1 0 0 0 0 0</pose><pose>1, 0 0 0 0 0</pose>'),
+     'the pose "1, 0 0 0 0 0" is read as 1 0 0 0 0 0, as by Gazebo'),
+    (visual('<material><pbr><metal><light_map uv_set="1.5">m</light_map></metal></pbr>'
+            '</material>'),
+     'uv_set="1.5" of <light_map> is read as 1, as by Gazebo'),
+])
+def test_numbers_that_are_read_otherwise_have_a_warning(text, warning):
+    assert warning in [each.message for each in load_text(text).warnings]
 
 
 def test_mask_in_hexadecimal_has_no_warning():
