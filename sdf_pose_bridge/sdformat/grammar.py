@@ -231,7 +231,7 @@ class Definition:
             if (item.required or item.value_type is not ValueType.STRING)
             and (item.name != 'name' or self.kind is None)]
         """Those that are required or have another type than string, without names of frames."""
-        self.has_name = 'name' in self.attributes and self.attributes['name'].required == '!'
+        self.has_name = '@name!' in content
         """Whether its elements must have names."""
         self.has_required_attributes = any(item.required for item in self.checked_attributes)
         self._child_items = [
