@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import array
 from collections.abc import Awaitable, Callable, Collection, Iterable, Mapping, Sequence
+import json
+import shlex
 from typing import Any
 
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParametersResult
@@ -323,12 +325,17 @@ def _converted(given: Parameter, *, shows_command_line: bool) -> Any:
     msg = (f'is {shown}, which is {_NAMES_OF_TYPES[given.type_]}; it must be '
            f'{_NAMES_OF_TYPES[declaration.type_]}')
     if shows_command_line and declaration.type_ is Parameter.Type.STRING:
-        msg += f', so quote it twice: -p "{given.name}:=\'{shown}\'"'
+        msg += f', so quote it twice: {_argument(given.name, json.dumps(shown))}'
     elif (shows_command_line and declaration.type_ is Parameter.Type.STRING_ARRAY
             and given.type_ is Parameter.Type.STRING):
-        items = ', '.join(f"'{item.strip()}'" for item in given.value.split(','))
-        msg += f': -p "{given.name}:=[{items}]"'
+        items = [item.strip() for item in given.value.split(',')]
+        msg += f': {_argument(given.name, json.dumps(items))}'
     raise ValueError(msg)
+
+
+def _argument(name: str, value: str) -> str:
+    """Return the arguments of a program that set a parameter, quoted for the shell."""
+    return shlex.join(['-p', f'{name}:={value}'])
 
 
 def parameter_with_type(given: Parameter, wanted: Parameter.Type) -> Parameter:

@@ -47,8 +47,8 @@ def default_settings(make_node):
     ('model', 'true', 'is True, which is true or false; it must be a string, so quote it twice'),
     ('optical_frames', 'maybe', 'is maybe, which is a string; it must be true or false'),
     ('kinds', 'link,frame',
-     ('is link,frame, which is a string; it must be a list of strings: -p "kinds:=[\'link\', '
-      '\'frame\']"')),
+     ('is link,frame, which is a string; it must be a list of strings: '
+      '-p \'kinds:=["link", "frame"]\'')),
     ('pose_topics', '[1, 2]', 'is [1, 2], which is a list of integers; it must be a list of '),
     ('publish_rate', 'fast', 'is fast, which is a string; it must be a number'),
     ('publish_rate', '500', 'is 500.0; it must be 0.0 for never, or from 0.001 to 100.0'),
@@ -61,6 +61,15 @@ def test_a_wrong_value_on_the_command_line_is_named_once(make_node, name, value,
         settings_from_node(node)
     (found,) = refusal.value.sentences
     assert found.startswith(f'parameter {name} {sentence}')
+
+
+@pytest.mark.parametrize(('name', 'value', 'expected'), [
+    ('frame_prefix', '5', '5'), ('pose_topics', '$(id)\';a,"b', ("$(id)';a", '"b'))])
+def test_the_advised_argument_sets_the_value(make_node, name, value, expected):
+    with pytest.raises(SettingsError) as refusal:
+        settings_from_node(make_node('bridge', *FILE, '-p', f'{name}:={value}'))
+    words = shlex.split(refusal.value.sentences[0].rpartition(': ')[2])
+    assert getattr(settings_from_node(make_node('bridge', *FILE, *words)), name) == expected
 
 
 def test_a_whole_number_is_a_number(make_node):
