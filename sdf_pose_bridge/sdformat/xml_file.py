@@ -224,7 +224,7 @@ def _parsed(text: bytes, path: str) -> XmlElement:
         huge_tree=False, remove_blank_text=True)
     root = None
     with contextlib.suppress(etree.XMLSyntaxError):
-        root = etree.fromstring(text, parser)
+        root = etree.fromstring(_with_comments_around_cdata(text), parser)
     errors = [entry for entry in parser.error_log if entry.type_name not in _IGNORED_ERRORS]
     if any(entry.type_name == 'ERR_NO_MEMORY' for entry in errors) and (
             max(map(len, text.split(b'<'))) <= _LONGEST_TEXT):
@@ -265,6 +265,15 @@ def _check_with_expat(text: bytes, path: str) -> None:
         if message != expat.errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT:
             msg = f'this is not well-formed XML: {message}'
             raise FileReadError(msg, Place(path, error.lineno)) from error
+
+
+def _with_comments_around_cdata(text: bytes) -> bytes:
+    """Let CDATA be a text of its own, as for libsdformat; libxml2 would join it to others."""
+    if b'<![CDATA[' not in text:
+        return text
+    return _OTHER_PART.sub(
+        lambda part: b'<!---->%b<!---->' % part[0] if part[0].startswith(b'<![') else part[0],
+        text)
 
 
 def _without_name_spaces(text: bytes) -> bytes:

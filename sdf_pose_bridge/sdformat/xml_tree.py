@@ -77,8 +77,8 @@ def text_of(xml: XmlElement) -> str:
     """
     Return the text that is the value of an element.
 
-    The value is the first run of character data. Comments before it are skipped. A comment or an
-    element in it ends it.
+    The value is the first run of character data. Comments before it are skipped. A comment, a
+    border of CDATA or an element in it ends it.
 
     :return: the text with its white space; empty if there is none.
     """

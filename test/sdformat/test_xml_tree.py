@@ -37,6 +37,10 @@ def xml(text):
     ('1 <!-- c -->2', '1 '),
     ('1 <x/>2', '1 '),
     ('<![CDATA[1 2]]>', '1 2'),
+    (' <![CDATA[1 2]]> 3', '1 2'),
+    ('1<![CDATA[2]]>', '1'),
+    ('<![CDATA[1]]><![CDATA[2]]>', '1'),
+    ('<!-- <![CDATA[ -->1<!-- ]]> -->', '1'),
     ('1&#32;2', '1 2'),
 ])
 def test_first_run_of_character_data_is_the_text(content, text):

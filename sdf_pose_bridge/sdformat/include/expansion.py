@@ -72,7 +72,7 @@ class IncludeExpansion:
         self._model_by_itself = model_by_itself
         self._files: dict[str, Document | None] = {}
         self._model_files: dict[str, ModelFile | str] = {}
-        self._missing: set[str] = set()
+        self._reported: set[str] = set()
         self._merged_models: dict[tuple[XmlElement, str, bytes], ModelByItself | None] = {}
 
     def expand(self, document: Document) -> None:
@@ -136,6 +136,11 @@ class IncludeExpansion:
         path = self._finder.path_from_uri(uri, place.file)
         if path is None:
             return self._finder.reason_not_found(uri, place.file)
+        other = self._finder.other_path_from_uri(uri, place.file)
+        msg = f'"{shortened(uri)}" is read from "{path}"; there is another one, "{other}"'
+        if other is not None and msg not in self._reported:
+            self._reported.add(msg)
+            self._sources.problems.warning(msg, place)
         if os.path.isdir(path):  # noqa: PTH112
             chosen = self._model_file(path)
             if isinstance(chosen, str):
@@ -192,9 +197,9 @@ class IncludeExpansion:
     def _report_missing(self, place: Place, uri: str, reason: str) -> None:
         msg = f'"{shortened(uri)}" cannot be included: {reason}'
         # A world may include the same model a hundred times.
-        if msg in self._missing:
+        if msg in self._reported:
             return
-        self._missing.add(msg)
+        self._reported.add(msg)
         if self._skips_missing:
             self._sources.problems.warning(f'{msg}; it is left out', place)
         else:

@@ -10,6 +10,7 @@ version: ``getModelFilePath`` and ``getBestSupportedModelVersion`` of libsdforma
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import islice
 import os
 from pathlib import Path
 import re
@@ -29,6 +30,8 @@ _SCHEME_OF_ADDRESS = re.compile(r'[A-Za-z][A-Za-z0-9+.-]+(?=:/)')
 _WEB = ('http', 'https')
 _SHARED = ('model', 'package')
 """Schemes of URIs that begin with the name of a model or package."""
+_RELATIVE = ('', 'file')
+"""Schemes of paths, which may be relative to the including file."""
 _MODELS_OF_GAZEBO_CLASSIC = ('model://sun', 'model://ground_plane')
 
 _LONGEST_URI = 500
@@ -69,17 +72,25 @@ class ResourceFinder(NamedTuple):
         """
         Find a file or directory; return its path, or None.
 
-        The order is: the search paths; an absolute path; the share directory of a package for
-        ``package://``; the Fuel cache for ``https://``; the directory of the including file for a
-        relative path or ``file://``; the paths of the environment; for ``model://`` and
+        The order is: an absolute path, and the directory of the including file for a relative path
+        or ``file://``; the search paths; the share directory of a package for ``package://``; the
+        Fuel cache for ``https://``; the paths of the environment; for ``model://`` and
         ``package://`` the model or package of that name that the including file is in; the working
         directory.
 
         :param uri: such as ``model://box``, ``package://pkg/models/box`` or ``box.sdf``.
         """
+        return next(self._paths(uri, including_file), None)
+
+    def other_path_from_uri(self, uri: str, including_file: str) -> str | None:
+        """Return a later file or directory of a relative path, which is not found; or None."""
+        found = self._paths(uri, including_file) if _scheme_and_name(uri)[0] in _RELATIVE else ()
+        real_paths = dict.fromkeys(map(os.path.realpath, found))
+        return next(islice(real_paths, 1, None), None)
+
+    def _paths(self, uri: str, including_file: str) -> Iterator[str]:
         paths = (candidate.path for candidate in self._candidates(uri, including_file))
-        found = next(filter(os.path.exists, paths), None)
-        return None if found is None else str(Path(found))
+        return (str(Path(path)) for path in paths if os.path.exists(path))  # noqa: PTH110
 
     def file_from_uri(self, uri: str, naming_file: str) -> str | None:
         """Find a file, such as a mesh, as :meth:`path_from_uri`, but no directory."""
@@ -206,14 +217,14 @@ class ResourceFinder(NamedTuple):
         # Joined to another path, an absolute path is unchanged. A Path is made only of a path that
         # is found, as this takes long for a name with many slashes. Gazebo ignores a third slash.
         relative = name.lstrip('/') if scheme in _SHARED else name
+        if scheme in _RELATIVE:
+            yield _Candidate(os.path.dirname(including_file), name)  # noqa: PTH120
         for directory in self.search_paths:
             yield _Candidate(directory, relative)
         if scheme == 'package':
             package, _, rest = relative.partition('/')
             for share in self._package_shares(package):
                 yield _Candidate(str(share), rest, is_owner=True)
-        if scheme in ('', 'file'):
-            yield _Candidate(os.path.dirname(including_file), name)  # noqa: PTH120
         for directory in self.environment_paths:
             yield _Candidate(directory, relative)
         if scheme in _SHARED:

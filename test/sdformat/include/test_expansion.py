@@ -48,6 +48,18 @@ def errors_in(write):
     return lambda content, **texts: errors_of_file(write(content, **texts))
 
 
+def test_file_that_a_relative_path_finds_in_two_places_gives_one_warning(write, tmp_path):
+    (tmp_path / 'models').mkdir()
+    (tmp_path / 'models/leaf.sdf').write_text(LIGHT)
+    scene = load(
+        write(include() + include(content='<name>b</name>')), resource_paths=[tmp_path / 'models'])
+    assert 'leaf' in scene.names
+    (warning,) = scene.warnings
+    assert warning.message == (
+        f'"leaf.sdf" is read from "{tmp_path}/leaf.sdf"; there is another one, '
+        f'"{tmp_path}/models/leaf.sdf"')
+
+
 # Wrong includes
 
 def test_first_error_of_an_included_file_names_the_way_there(tmp_path):

@@ -105,6 +105,15 @@ def test_relative_path_is_searched_beside_the_including_file(uri, is_found, tmp_
     assert found(uri, tmp_path) == (box if is_found else None)
 
 
+def test_relative_path_is_searched_beside_the_including_file_first(tmp_path):
+    mine, other = write(tmp_path / 'from', 'box.sdf'), write(tmp_path / 'models', 'box.sdf')
+    assert found('box.sdf', tmp_path, [tmp_path / 'models']) == mine
+    finder = resource_finder([tmp_path / 'models'], {})
+    assert finder.other_path_from_uri('box.sdf', mine) == other
+    assert finder.other_path_from_uri('model://box.sdf', mine) is None
+    assert resource_finder([tmp_path / 'from'], {}).other_path_from_uri('box.sdf', mine) is None
+
+
 def test_relative_path_is_searched_in_the_working_directory_last(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     write(tmp_path, 'box.sdf')
