@@ -125,17 +125,20 @@ class JointBroadcaster:
 def transforms_of_100_joints() -> Iterator[tuple[Function, Function | None]]:
     from rclpy.serialization import serialize_message
 
-    from sdf_pose_bridge.ros.joint_state_topic import JointStateTopic, Meanings
     from sdf_pose_bridge.ros.published_frames import PublishedFrames
     from sdf_pose_bridge.ros.publishers import Publishers
+    from sdf_pose_bridge.ros.state_messages import Effects
+    from sdf_pose_bridge.ros.state_topic import JOINT_STATE, JointStateTopic, TopicKey
+    from sdf_pose_bridge.tf.lookup import PoseLookup
     with node() as ros:
         scene = sdf_pose_bridge.load_text(chain_text(100))
         tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
         assert tree.moving is not None
-        positions = JointPositions(scene, tree.moving.dofs)
+        positions = JointPositions(scene, tree.moving.motion)
         frames = PublishedFrames(Publishers(ros), tree, positions, {}).moving
         assert frames is not None
-        topic, meanings = JointStateTopic(ros, 'joint_states', ''), Meanings(frames)
+        topic = JointStateTopic(ros, TopicKey('joint_states', '', JOINT_STATE))
+        effects = Effects(frames, PoseLookup(scene, tree, positions))
         broadcaster = JointBroadcaster(ros, 100, '/tf_of_counterpart')
         messages = joint_states(100)
         # The counterpart gets objects, which rclpy would have to make first.
@@ -143,12 +146,10 @@ def transforms_of_100_joints() -> Iterator[tuple[Function, Function | None]]:
             [serialize_message(each) for each in itertools.islice(messages, 1000)])
 
         def publish() -> None:
-            message = topic.read(next(serialized), meanings)
-            assert message is not None
+            message, = topic.read(next(serialized), effects)
             positions.update(
-                message.meaning.selection, message.positions, message.stamp_ns,
-                ignore_stamps=True)
-            frames.publish_tf(frames.stamp(meanings.rows(message.meaning), message.stamp_ns))
+                message.effect.selection, message.values, message.stamp_ns, ignore_stamps=True)
+            frames.publish_tf(frames.stamp(effects.rows(message.effect), message.stamp_ns))
 
         yield publish, lambda: broadcaster.take(next(messages))
 

@@ -26,6 +26,7 @@ PACKAGES = {
     'sdf_pose_bridge_interfaces': ROOT / 'sdf_pose_bridge_interfaces',
     'sdf_pose_bridge_cpp_client': ROOT / 'examples/cpp_client',
     'tf2_msgs': ROOT / 'underlay/tf2_msgs',
+    'simulation_interfaces': ROOT / 'underlay/simulation_interfaces',
 }
 OURS = ('sdf_pose_bridge', 'sdf_pose_bridge_interfaces')
 COLCON_VERBS = ('build', 'test', 'list', 'info', 'graph')
@@ -102,7 +103,8 @@ def test_every_license_is_apache(package):
 
 
 def test_there_is_one_version():
-    versions = {package_xml(name).findtext('version') for name in PACKAGES if name != 'tf2_msgs'}
+    versions = {package_xml(name).findtext('version') for name in PACKAGES
+                if PACKAGES[name].parent != ROOT / 'underlay'}
     assert versions == {arguments_of_setup()['version']} == {sdf_pose_bridge.__version__}
 
 

@@ -17,6 +17,7 @@ from collections.abc import Callable, Iterator
 import configparser
 import contextlib
 import fcntl
+import functools
 import hashlib
 import json
 import os
@@ -43,7 +44,16 @@ BUILD = ROOT / f'build{SUFFIX}'
 INSTALL = ROOT / f'install{SUFFIX}'
 COLCON_LOG = ROOT / f'log{SUFFIX}'
 LOG = UNDERLAY / 'make_underlay.log'
-TF_MESSAGE_HASH = 'RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087'
+# The packages that ROS 2 has and PyPI has not, of which the folders here have the needed types;
+# one type of each that contains all others, and its hash in ROS 2.
+MISSING_PACKAGES = {
+    'tf2_msgs': (
+        'msg/TFMessage',
+        'RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087'),
+    'simulation_interfaces': (
+        'srv/GetEntitiesStates',
+        'RIHS01_0a76170d0c1c90e1eaf805cfab78ea801d1f82df309a28c1f0fae4b570f19754'),
+}
 BRIDGE = 'sdf_pose_bridge'
 COMMAND_LINE = 'sdf_pose'
 INTERFACES = 'sdf_pose_bridge_interfaces'
@@ -165,8 +175,7 @@ class Underlay:
         environment = digest_of_values(
             str(FORMAT), str(ROOT), str(self._ros_prefix), os.path.realpath(sys.executable),
             sys.version, digest_of_paths(*(lock for locks in self._locks for lock in locks)))
-        tf2_msgs = digest_of_values(environment, digest_of_paths(HERE / 'tf2_msgs'))
-        interfaces = digest_of_values(tf2_msgs, digest_of_paths(ROOT / INTERFACES))
+        interfaces = digest_of_values(environment, digest_of_paths(ROOT / INTERFACES))
         bridge = digest_of_values(
             environment, digest_of_paths(*bridge_sources()))
         source = f'{machine.TITLE} and the tools' if self._from_pypi else 'the tools'
@@ -182,9 +191,11 @@ class Underlay:
                  f'building {BRIDGE}', 2, self._build_bridge),
         ]
         if self._from_pypi:
-            plan.insert(2, Step(
-                'tf2_msgs', tf2_msgs, UNDERLAY / 'share/tf2_msgs/package.xml',
-                'building tf2_msgs', 10, self._build_tf2_msgs))
+            plan[2:2] = [
+                Step(name, digest_of_values(environment, digest_of_paths(HERE / name)),
+                     UNDERLAY / 'share' / name / 'package.xml', f'building {name}', 15,
+                     functools.partial(self._build_missing_package, name))
+                for name in MISSING_PACKAGES]
         due = [step for step in plan if not step.is_done()]
         if plan[0] in due:
             due = plan
@@ -260,20 +271,21 @@ class Underlay:
             if repaired != text:
                 file.write_text(repaired, encoding='utf-8')
 
-    def _build_tf2_msgs(self) -> None:
-        work = UNDERLAY / 'tf2_msgs'
+    def _build_missing_package(self, name: str) -> None:
+        work = UNDERLAY / name
         _remove(work)
         self._colcon(
             work / 'log', work / 'build', UNDERLAY, '--merge-install',
-            '--base-paths', str(HERE / 'tf2_msgs'))
-        description = json.loads((UNDERLAY / 'share/tf2_msgs/msg/TFMessage.json').read_text())
+            '--base-paths', str(HERE / name))
+        type_, expected = MISSING_PACKAGES[name]
+        description = json.loads((UNDERLAY / f'share/{name}/{type_}.json').read_text())
         hashes = {
             entry['type_name']: entry['hash_string'] for entry in description['type_hashes']}
-        if hashes['tf2_msgs/msg/TFMessage'] != TF_MESSAGE_HASH:
+        found = hashes[f'{name}/{type_}']
+        if found != expected:
             msg = (
-                f'tf2_msgs/msg/TFMessage was built with the type hash '
-                f'{hashes["tf2_msgs/msg/TFMessage"]}, which no other ROS 2 understands; '
-                f'restore underlay/tf2_msgs/msg/TFMessage.msg.')
+                f'{name}/{type_} was built with the type hash {found}, which no other ROS 2 '
+                f'understands; restore underlay/{name}.')
             raise RefusalError(msg)
 
     def _build_interfaces(self) -> None:

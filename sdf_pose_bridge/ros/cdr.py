@@ -1,15 +1,15 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Serialize messages about frames from arrays, and read serialized joint states into an array.
+Serialize messages about frames from arrays, and read serialized joint states and poses.
 
 This avoids the message objects of rclpy, which are slow for 10,000 transforms; for a JointState
-they take longer than its processing. The format is plain CDR, version 1: the four bytes 0 1 0 0
-(or 0 0 0 0 if it is big-endian, which is only read), then the fields one after the other. Each
-number is at a multiple of its size, counted from behind the four bytes. A string is its length as
-uint32, its UTF-8 bytes and a zero, which the length includes. A sequence is its length as uint32
-and its entries. Source: OMG, DDS-XTypes 1.3, chapter 7.4.1, and the definitions of TFMessage,
-TransformStamped, PoseStamped and JointState.
+or a pose they take longer than its processing. The format is plain CDR, version 1: the four bytes
+0 1 0 0 (or 0 0 0 0 if it is big-endian, which is only read), then the fields one after the other.
+Each number is at a multiple of its size, counted from behind the four bytes. A string is its
+length as uint32, its UTF-8 bytes and a zero, which the length includes. A sequence is its length
+as uint32 and its entries. Source: OMG, DDS-XTypes 1.3, chapter 7.4.1, and the definitions of
+TFMessage, TransformStamped, PoseStamped, PoseWithCovarianceStamped, Odometry and JointState.
 """
 
 from __future__ import annotations
@@ -36,10 +36,12 @@ _BEGIN = b'\0\1\0\0'
 """The first bytes of a message."""
 
 _FORMATS = {
-    begin: (struct.Struct(f'{order}iII'), struct.Struct(f'{order}I'), np.dtype(f'{order}f8'))
+    begin: (
+        struct.Struct(f'{order}iII'), struct.Struct(f'{order}I'), np.dtype(f'{order}f8'),
+        struct.Struct(f'{order}7d'))
     for begin, order in ((b'\0\0', '>'), (b'\0\1', '<'))}
-"""Those of a stamp with a length, of a length and of a number in plain CDR, by the first two bytes
-of a message."""
+"""Those of a stamp with a length, a length, a number and a pose in plain CDR, by the first two
+bytes of a message."""
 
 MOST_BYTES = 1_000_000
 """Largest size of a message that is read; other callbacks wait meanwhile."""
@@ -146,13 +148,8 @@ def joint_state_from_bytes(
     :raises ValueError: if it is not a whole message in plain CDR, if it is too large, or if its
         fields contradict one another.
     """
-    if len(data) > MOST_BYTES:
-        msg = f'it has {len(data)} bytes, more than {MOST_BYTES}'
-        raise ValueError(msg)
-    if data[:2] not in _FORMATS:
-        msg = f'it begins with 0x{data[:2].hex()}, which is not plain CDR'
-        raise ValueError(msg)
-    stamp_and_length, length_format, number = _FORMATS[data[:2]]
+    _check_encoding(data)
+    stamp_and_length, length_format, number, _ = _FORMATS[data[:2]]
     try:
         sec, nanosec, length = stamp_and_length.unpack_from(data, _START)
         begin = _START + 12 + length
@@ -174,21 +171,88 @@ def joint_state_from_bytes(
             f'it has {len(names.names)} names and {count} positions, and each name must have a '
             'position')
         raise ValueError(msg)
+    return _stamp_ns(sec, nanosec), names, positions
+
+
+class StampedPose(NamedTuple):
+    """A pose in a message."""
+
+    stamp_ns: int
+    """Its stamp in nanoseconds; 0 if it has none."""
+    frame_id: str
+    child_frame_id: str
+    """Empty if the type of the message has none."""
+    pose: tuple[float, ...]
+    """Seven numbers as they were sent: x y z, quaternion x y z w."""
+
+
+def poses_from_bytes(
+    data: bytes, *, has_child: bool, is_sequence: bool = False) -> list[StampedPose]:
+    """
+    Read a message with poses or transforms. Fields that follow a single pose are not read.
+
+    :param data: the serialized message.
+    :param has_child: whether its type has a child frame id.
+    :param is_sequence: whether it is a TFMessage.
+    :raises ValueError: as for :func:`joint_state_from_bytes`.
+    """
+    _check_encoding(data)
+    stamp_and_length, length_format, _, pose_format = _FORMATS[data[:2]]
+    poses, place, count = [], _START, 1
+    try:
+        if is_sequence:
+            count, = length_format.unpack_from(data, place)
+            place += _LENGTH
+        for _ in range(count):
+            place += -place % 4
+            sec, nanosec, _ = stamp_and_length.unpack_from(data, place)
+            frame_id, place = _string_from_bytes(data, place + _STAMP, length_format)
+            child_frame_id = ''
+            if has_child:
+                child_frame_id, place = _string_from_bytes(data, place, length_format)
+            place += (_START - place) % 8
+            pose = pose_format.unpack_from(data, place)
+            place += _NUMBERS
+            poses.append(StampedPose(_stamp_ns(sec, nanosec), frame_id, child_frame_id, pose))
+    except struct.error as error:
+        msg = f'it ends too early: {error}'
+        raise ValueError(msg) from error
+    return poses
+
+
+def _check_encoding(data: bytes) -> None:
+    if len(data) > MOST_BYTES:
+        msg = f'it has {len(data)} bytes, more than {MOST_BYTES}'
+        raise ValueError(msg)
+    if data[:2] not in _FORMATS:
+        msg = f'it begins with 0x{data[:2].hex()}, which is not plain CDR'
+        raise ValueError(msg)
+
+
+def _stamp_ns(sec: int, nanosec: int) -> int:
     if sec < 0 or nanosec >= NANOSECONDS:
         msg = (
             f'it has the stamp sec={sec} nanosec={nanosec}, and sec must not be negative and '
             f'nanosec must be less than {NANOSECONDS}')
         raise ValueError(msg)
-    return sec * NANOSECONDS + nanosec, names, positions
+    return sec * NANOSECONDS + nanosec
+
+
+def _string_from_bytes(
+    data: bytes, place: int, length_format: struct.Struct,
+) -> tuple[str, int]:
+    """Return a string, and the place of its end."""
+    place += -place % 4
+    length, = length_format.unpack_from(data, place)
+    end = place + _LENGTH + length
+    # The length counts a zero at the end.
+    return data[place + _LENGTH:end - 1].decode(errors='replace'), end
 
 
 def _names_from_bytes(data: bytes, begin: int, length_format: struct.Struct) -> SerializedNames:
     count, = length_format.unpack_from(data, begin)
     names, end = [], begin + 4
     for _ in range(count):
-        place = end + -end % 4
-        length, = length_format.unpack_from(data, place)
-        end = place + 4 + length
-        # The length counts a zero at the end.
-        names.append(data[place + 4:end - 1].decode(errors='replace'))
+        name, end = _string_from_bytes(data, end, length_format)
+        names.append(name)
     return SerializedNames(tuple(names), data[begin:end])

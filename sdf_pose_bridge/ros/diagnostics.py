@@ -16,8 +16,8 @@ from rclpy.node import Node
 
 from sdf_pose_bridge.ros.log_lines import (
     count_in_words,
-    line_about_unreported_joints,
-    MissingJoints,
+    line_about_unreported,
+    Unreported,
 )
 from sdf_pose_bridge.ros.publishers import SwitchedPublisher, Topic
 from sdf_pose_bridge.tf.loaded_scene import LoadedScene
@@ -37,14 +37,14 @@ class Diagnostics:
 
     The topic exists once it is switched on.
 
-    :param unreported_joints: returns the joints whose positions are missing.
+    :param unreported: returns the joints and models whose positions or poses are missing.
     """
 
-    def __init__(self, node: Node, unreported_joints: Callable[[], MissingJoints]) -> None:
+    def __init__(self, node: Node, unreported: Callable[[], Unreported]) -> None:
         self._node = node
         self._publisher = SwitchedPublisher(
             node, Topic('/diagnostics', DiagnosticArray, depth=10, is_latched=False))
-        self._unreported_joints = unreported_joints
+        self._unreported = unreported
         self._last: tuple[LoadedScene, Sequence[str]] | None = None
         self._message = DiagnosticArray()
 
@@ -69,21 +69,21 @@ class Diagnostics:
         if self._last is not None:
             name = self._node.get_fully_qualified_name().lstrip('/')
             self._message.status = [
-                status_from_scene(*self._last, self._unreported_joints(), name)]
+                status_from_scene(*self._last, self._unreported(), name)]
         self._message.header.stamp = self._node.get_clock().now().to_msg()
         self._publisher.publish(self._message)
 
 
 def status_from_scene(
-    loaded: LoadedScene, failure: Sequence[str], unreported: MissingJoints, name: str,
+    loaded: LoadedScene, failure: Sequence[str], unreported: Unreported, name: str,
 ) -> DiagnosticStatus:
     """
     Return the status of the node.
 
     :param failure: the errors of the last load; empty if it succeeded.
-    :param unreported: the joints whose positions are missing.
+    :param unreported: the joints and models whose positions or poses are missing.
     :return: ERROR if the last load failed, so that the scene before it is still published; WARN if
-        the scene has warnings or joints without positions; otherwise OK.
+        the scene has warnings, or joints or models that are not reported; otherwise OK.
     """
     warnings = loaded.warnings
     loaded_at = datetime.datetime.fromtimestamp(
@@ -101,13 +101,15 @@ def status_from_scene(
         'last error': '\n'.join(failure),
         'joints not reported': str(unreported.number),
         'first joint not reported': unreported.first,
+        'models not reported': str(len(unreported.models)),
+        'first model not reported': next(iter(unreported.models), ''),
     }
     if failure:
         level = DiagnosticStatus.ERROR
         text = f'the last load failed, the scene before it is published: {failure[0]}'
-    elif unreported.number:
+    elif unreported.number or unreported.models:
         level = DiagnosticStatus.WARN
-        text = line_about_unreported_joints(unreported)
+        text = line_about_unreported(unreported)
     elif warnings:
         level = DiagnosticStatus.WARN
         text = f'serving {loaded.path.name} with {count_in_words(len(warnings), "warning")}'

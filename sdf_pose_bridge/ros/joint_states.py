@@ -1,12 +1,14 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Follow topics of joint states in a thread, and publish what their messages move.
+Follow messages about joints and models in a thread, and publish what they move.
+
+The messages are joint states, poses of models on topics, and answers of a simulator.
 
 The transforms that a message changes are published on ``/tf`` with the stamp of the message, if it
-is newer than their last one. Frames of joints that no message has named are not published. If such
-joints are at zero, all frames are published before the first message, and then these frames with
-each message, so that TF is complete.
+is newer than their last one. Frames of joints and models that no message has named are not
+published. If these are where the file puts them, all frames are published before the first
+message, and then these frames with each message, so that TF is complete.
 
 With a highest rate, a message is published at once and begins a period, which is the same for all
 topics. Later ones wait in the subscriptions for its end. Then the newest of them are published in
@@ -31,21 +33,23 @@ from rclpy.exceptions import InvalidHandle
 from rclpy.node import Node
 from rclpy.task import Future
 
+from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.ros.background import result_from_executor, wake
 from sdf_pose_bridge.ros.cdr import NANOSECONDS
-from sdf_pose_bridge.ros.joint_state_topic import JointStateTopic, Meaning, Meanings, Message
-from sdf_pose_bridge.ros.log_lines import line_about_unreported_joints, MissingJoints
+from sdf_pose_bridge.ros.log_lines import line_about_unreported, names_in_line, Unreported
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
-from sdf_pose_bridge.ros.topic_names import JointStateTopics
+from sdf_pose_bridge.ros.state_messages import Effect, Effects, Message, StateSource
+from sdf_pose_bridge.ros.state_sources import StateSources
+from sdf_pose_bridge.ros.topic_names import StateTopics
 from sdf_pose_bridge.ros.wait_set import WaitSet
 from sdf_pose_bridge.tf.lookup import PoseLookup
 
 INITIAL_PERIOD_S = 0.1
-"""Period of ``/tf`` before the first message, if joints are at zero then."""
+"""Period of ``/tf`` before the first message, if joints and models are known then."""
 
 GRACE_S = 2.0
-"""Seconds until joints that no message has named are reported."""
+"""Seconds until joints and models that no message has named are reported."""
 
 TOPICS_PERIOD_S = 1.0 / 30.0
 """Shortest period of the topics of moving frames, and longest time to take messages at once."""
@@ -62,11 +66,11 @@ _NO_ROWS: NDArray[np.intp] = np.array([], np.intp)
 
 
 class _Target(NamedTuple):
-    """The frames, topics and settings that the thread follows."""
+    """The frames, sources and settings that the thread follows."""
 
     frames: PublishedMovingFrames
     lookup: PoseLookup
-    topics: Sequence[JointStateTopic]
+    sources: Sequence[StateSource]
     settings: Settings
 
     @property
@@ -78,7 +82,7 @@ class _Target(NamedTuple):
 
 class JointStates:
     """
-    Follows topics of joint states, and publishes the frames that their messages move.
+    Follows messages about joints and models, and publishes the frames that they move.
 
     A thread does this from its construction to :meth:`end`. It is constructed beside the executor
     of the node, which makes and destroys the subscriptions.
@@ -88,13 +92,12 @@ class JointStates:
 
     def __init__(
         self, node: Node, frames: PublishedMovingFrames, lookup: PoseLookup,
-        topics: JointStateTopics, settings: Settings,
+        topics: StateTopics, settings: Settings,
     ) -> None:
         self._node = node
         self._logger = node.get_logger()
-        # By their names before they are remapped, with their models.
-        self._topics: dict[tuple[str, str], JointStateTopic] = {}
-        self._warnings: tuple[str, ...] = ()
+        self._sources = result_from_executor(
+            node, lambda: StateSources(node, self._follow_sources, self._wake))
         self._wait_set = WaitSet(node.context)
         self._target = self._next_target = _Target(frames, lookup, (), settings)
         # The thread makes them when it has processed the messages that came before.
@@ -106,6 +109,9 @@ class JointStates:
         self._now_ns = 0
         self._is_simulated = self._has_jumped = False
         self._has_moved = self._has_reported_missing = False
+        # The name of the source of each model, and the models that have several.
+        self._sources_of_models: dict[str, str] = {}
+        self._models_of_several: set[str] = set()
         self._start_frames()
         self._end_period()
         self._thread = threading.Thread(target=self._run, name='joint states', daemon=True)
@@ -116,27 +122,19 @@ class JointStates:
     # Calls of the loader and, for look-ups, of the executor
 
     def follow(
-        self, frames: PublishedMovingFrames, lookup: PoseLookup, topics: JointStateTopics,
+        self, frames: PublishedMovingFrames, lookup: PoseLookup, topics: StateTopics,
         settings: Settings,
     ) -> None:
         """
-        Change what is followed; joints with the same names keep their positions.
+        Change what is followed; joints and models with the same names keep what was reported.
 
         When this returns, the thread publishes nothing of the frames before.
         """
-        if topics.warnings != self._warnings:
-            self._warnings = topics.warnings
-            for line in topics.warnings:
-                self._logger.warning(line)
-        wanted = topics.models.items()
-        unwanted = [self._topics.pop(key) for key in self._topics.keys() - wanted]
-        for key in [key for key in wanted if key not in self._topics]:
-            self._open(*key)
-        self._topic_count = len(wanted)
-        self._next_target = _Target(frames, lookup, tuple(self._topics.values()), settings)
+        unwanted = self._sources.follow(topics, settings, frames.positions.free_models)
+        result_from_executor(
+            self._node, lambda: self._follow_sources(_Target(frames, lookup, (), settings)))
         self.wait()
-        for topic in unwanted:
-            self._close(topic)
+        self._sources.close(unwanted)
 
     def publish_topics(self) -> None:
         """Publish all moving frames on ``~/transforms`` and ``~/poses/...`` soon."""
@@ -162,32 +160,23 @@ class JointStates:
         self._has_to_end = True
         self._wake()
         self._thread.join()
-        for topic in self._topics.values():
-            self._node.destroy_subscription(topic.subscription)
+        self._sources.end()
 
     @property
-    def unreported(self) -> MissingJoints:
-        """The joints that no message has named in time."""
+    def unreported(self) -> Unreported:
+        """The joints and models that no message has named in time."""
         target = self._next_target
         positions = target.frames.positions
-        found = [] if self._end_grace in self._due else positions.unreported()
-        return MissingJoints(len(found), found[0], [
-            topic.name for topic in target.topics if not positions.unknown(found[:1], topic.model)
-        ]) if found else MissingJoints()
+        joints, models = ([], []) if self._end_grace in self._due else positions.unreported()
+        topics = [
+            topic.name for topic in self._sources.joint_state_topics
+            if not positions.unknown(joints[:1], topic.model)] if joints else []
+        return Unreported(len(joints), (*joints, '')[0], topics, models)
 
-    def _open(self, name: str, model: str) -> None:
-        # The executor goes on between two of them.
-        try:
-            self._topics[name, model] = result_from_executor(
-                self._node, lambda: JointStateTopic(self._node, name, model))
-        except (RuntimeError, ValueError) as error:
-            # Security may forbid it. The rest of the message names lines of the source of ROS.
-            reason = str(error).partition(', at /')[0]
-            self._logger.warning(f'no subscription to {name}: {reason}')
-
-    def _close(self, topic: JointStateTopic) -> None:
-        result_from_executor(
-            self._node, lambda: self._node.destroy_subscription(topic.subscription))
+    def _follow_sources(self, target: _Target | None = None) -> None:
+        """Follow all sources. The executor alone does this, as it may find a new one itself."""
+        self._next_target = (target or self._next_target)._replace(sources=self._sources.sources)
+        self._wake()
 
     def _wake(self) -> None:
         # The thread may have ended with the node.
@@ -216,9 +205,12 @@ class JointStates:
         with self._node.handle:
             pass  # the wait set would not notice that the node was destroyed
         call_count = len(self._calls)
-        ready = self._wait_set.wait(
-            [each.subscription for each in self._awaited],
+        # Sources with a subscription come first.
+        indices = self._wait_set.wait(
+            [each.subscription for each in self._awaited if each.subscription is not None],
             0.0 if call_count else self._longest_wait())
+        ready = [self._awaited[index] for index in indices]
+        ready += [each for each in self._awaited[-1:] if each.has_answers]
         if self._target is not self._next_target:
             self._follow_next_target()
             return  # the messages are ready again
@@ -226,9 +218,9 @@ class JointStates:
         has_ended = self._is_in_period and (
             self._has_jumped or self._now_ns >= self._period_ends_ns)
         if ready and not has_ended:
-            self._take([self._awaited[index] for index in ready], at_once=True)
+            self._take(ready, at_once=True)
         if self._is_in_period and (has_ended or call_count or not ready):
-            self._take(self._target.topics, at_once=False)
+            self._take(self._target.sources, at_once=False)
         if has_ended:
             self._end_period()
         self._make_calls(call_count)
@@ -259,7 +251,8 @@ class JointStates:
         self._end_period()
 
     def _start_frames(self) -> None:
-        self._meanings = Meanings(self._target.frames)
+        target = self._target
+        self._effects = Effects(target.frames, target.lookup, target.settings.model_pose_frames)
         self._waiting = _NO_ROWS
         now = time.monotonic()
         self._due[self._publish_all] = self._due[self._publish_at_rest] = now
@@ -275,26 +268,26 @@ class JointStates:
     def _end_period(self) -> None:
         """Publish what has waited, if anything has; otherwise publish the next message at once."""
         rows, self._waiting = self._waiting, _NO_ROWS
-        self._period_ends_ns, self._awaited = math.inf, self._target.topics
+        self._period_ends_ns, self._awaited = math.inf, self._target.sources
         silent_ns = self._now_ns - max(2.0 * self._target.period_ns, SILENCE_NS)
         self._publish(rows, [each for each in self._awaited if each.last_ns < silent_ns])
 
     # Messages
 
-    def _take(self, topics: Sequence[JointStateTopic], *, at_once: bool) -> None:
+    def _take(self, sources: Sequence[StateSource], *, at_once: bool) -> None:
         """
-        Take messages of topics, and set their positions.
+        Take messages of sources, and set their positions.
 
         :param at_once: whether to publish what they move, and to leave the others as soon as a
             period has begun. Otherwise it waits, and of those with the same names the newest
             counts.
         """
-        newest: dict[Meaning, Message] = {}
-        # Messages may come faster than they are taken. Topics take turns, so that one with too
+        newest: dict[Effect, Message] = {}
+        # Messages may come faster than they are taken. Sources take turns, so that one with too
         # many messages does not delay the others.
         ends_at = time.monotonic() + TOPICS_PERIOD_S
-        while topics and time.monotonic() < ends_at:
-            topics = [topic for topic in topics if topic.take(self._meanings, newest)]
+        while sources and time.monotonic() < ends_at:
+            sources = [source for source in sources if source.take(self._effects, newest)]
             if at_once:
                 self._publish(_union([self._move(each) for each in newest.values()]))
                 newest.clear()
@@ -315,35 +308,53 @@ class JointStates:
             self._waiting = _NO_ROWS
 
     def _move(self, message: Message) -> NDArray[np.intp]:
-        target, topic, meaning = self._target, message.topic, message.meaning
+        target, source, effect = self._target, message.source, message.effect
         positions, ignores_stamps = target.frames.positions, target.settings.ignore_timestamp
         stamp_ns = message.stamp_ns or self._node.get_clock().now().nanoseconds
         if self._has_jumped and stamp_ns > self._now_ns:
             return _NO_ROWS  # it was sent before that
-        topic.last_ns = self._now_ns
-        topic.warn_about_invalid(positions.update(
-            meaning.selection, message.positions, stamp_ns, ignore_stamps=ignores_stamps))
-        if self._has_reported_missing and not positions.unreported():
+        try:
+            values = self._effects.values(message)
+        except SdfError as error:
+            reason = str(error)
+            source.warn('frame', lambda: f'a pose from {source.name} is ignored: {reason}')
+            return _NO_ROWS
+        source.last_ns = self._now_ns
+        source.warn_about_invalid(positions.update(
+            effect.selection, values, stamp_ns, ignore_stamps=ignores_stamps))
+        if self._has_reported_missing and not any(positions.unreported()):
             self._has_reported_missing = False
-            self._logger.info('all joints have been reported now')
-        rows = self._meanings.rows(meaning)
+            models = ' and models' if positions.free_models else ''
+            self._logger.info(f'all joints{models} have been reported now')
+        if values.ndim > 1:
+            self._note_source(positions.names[effect.selection.changed[0]], source.name)
+        rows = self._effects.rows(effect)
         if len(rows) and not self._has_moved:
             self._has_moved = True
+            count = self._sources.wanted_count
             self._logger.info(
-                f'following {topic.name}' if self._topic_count == 1 else
-                f'following {self._topic_count} topics of joint states; the first message is on '
-                f'{topic.name}')
+                f'following {source.name}' if count == 1 else
+                f'following {count} sources; the first message is on {source.name}')
         return target.frames.stamp(rows, stamp_ns, ignore_stamps=ignores_stamps)
+
+    def _note_source(self, model: str, source: str) -> None:
+        """Report a model whose poses come from several sources, once."""
+        other = self._sources_of_models.setdefault(model, source)
+        if other != source and model not in self._models_of_several:
+            self._models_of_several.add(model)
+            self._logger.warning(
+                f'poses of {names_in_line([model])} come from {other} and from {source}; the one '
+                'with the newest stamp counts')
 
     # Publication
 
     def _publish(
-        self, rows: NDArray[np.intp], awaited: Sequence[JointStateTopic] = (),
+        self, rows: NDArray[np.intp], awaited: Sequence[StateSource] = (),
     ) -> None:
         """
         Publish moving transforms, if any; with a highest rate, a period begins if there is none.
 
-        :param awaited: the topics whose messages do not wait for the end of this period.
+        :param awaited: the sources whose messages do not wait for the end of this period.
         """
         if not len(rows):
             return
@@ -375,11 +386,11 @@ class JointStates:
         self._target.frames.publish_topics(only_listeners=False)
 
     def _end_grace(self) -> None:
-        """Report the joints that no message has named, once."""
-        unreported = self.unreported
-        if unreported.number:
+        """Report the joints and models that no message has named, once."""
+        line = line_about_unreported(self.unreported)
+        if line:
             self._has_reported_missing = True
-            self._logger.info(line_about_unreported_joints(unreported))
+            self._logger.info(line)
 
 
 def _union(parts: Sequence[NDArray[np.intp]]) -> NDArray[np.intp]:

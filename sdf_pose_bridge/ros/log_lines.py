@@ -25,14 +25,17 @@ MOST_LINES = 20
 """Largest number of errors, warnings or names in the log; a generated file may have thousands."""
 
 
-class MissingJoints(NamedTuple):
-    """Joints that no message has named."""
+class Unreported(NamedTuple):
+    """Joints and models that no message has reported."""
 
     number: int = 0
+    """The number of joints."""
     first: str = ''
-    """The name of the first one."""
+    """The name of the first joint."""
     topics: Sequence[str] = ()
     """The full names of the topics on which messages can name it."""
+    models: Sequence[str] = ()
+    """The names of the models."""
 
 
 def lines_from_error(error: Exception) -> list[str]:
@@ -139,21 +142,30 @@ def line_about_gazebo(count: int) -> str:
         f'for a text, shows {"it" if count == 1 else "them"}')
 
 
-def line_about_unreported_joints(joints: MissingJoints) -> str:
-    """Return a line with the number of joints without reported positions, at least one."""
-    have = 'has' if joints.number == 1 else 'have'
-    return (
-        f'{count_in_words(joints.number, "joint")} {have} not been reported yet, for example '
-        f'{names_in_line([joints.first])}; frames that a joint moves have no transforms until a '
-        f'message on {" or ".join(joints.topics) or "a topic"} names the joint, or with '
-        'unreported_joints:=zero')
+def line_about_unreported(missing: Unreported) -> str:
+    """Return a line with the numbers of joints and models that are not reported; '' if none is."""
+    parts = []
+    if missing.number:
+        have = 'has' if missing.number == 1 else 'have'
+        parts.append(
+            f'{count_in_words(missing.number, "joint")} {have} not been reported yet, for example '
+            f'{names_in_line([missing.first])}; frames that a joint moves have no transforms '
+            f'until a message on {" or ".join(missing.topics) or "a topic"} names the joint, '
+            'or with unreported_joints:=zero')
+    if missing.models:
+        have = 'has' if len(missing.models) == 1 else 'have'
+        parts.append(
+            f'{count_in_words(len(missing.models), "model")} {have} no pose yet, for example '
+            f'{names_in_line(missing.models[:1])}; its frames have no transform from the root '
+            'until a message has its pose')
+    return '; '.join(parts)
 
 
 def line_about_joints_at_rest(scene: Scene, model: str, frame_names: FrameNames) -> str:
     """
     Return a line that joints do not move; '' if no joint can move.
 
-    Joints that follow others are not counted, as in :func:`line_about_unreported_joints`.
+    Joints that follow others are not counted, as in :func:`line_about_unreported`.
 
     :param model: the scoped name of the only model that is published; empty for everything.
     :param frame_names: the part of a scoped name that the name of a joint contains.

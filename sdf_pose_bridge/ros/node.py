@@ -34,7 +34,7 @@ from sdf_pose_bridge.ros.log_lines import (
     lines_about_scene,
     lines_from_error,
     lines_from_warnings,
-    MissingJoints,
+    Unreported,
 )
 from sdf_pose_bridge.ros.parameters import Settings, SettingsError
 from sdf_pose_bridge.ros.published_frames import frames_from_scene, PublishedFrames
@@ -43,7 +43,7 @@ from sdf_pose_bridge.ros.scene_reader import loaded_scene, SceneReader
 from sdf_pose_bridge.ros.services import add_services, SERVICE_QOS, set_pose
 from sdf_pose_bridge.ros.topic_names import (
     check_number_of_topics,
-    joint_state_topics_from_patterns,
+    state_topics_from_settings,
 )
 from sdf_pose_bridge.tf.loaded_scene import LoadedScene, LoadRequest
 from sdf_pose_bridge.tf.loading import files_behind_error
@@ -91,7 +91,7 @@ class SdfPoseBridge:
         self._reader = reader
         self._joint_states: JointStates | None = None
         self._diagnostics = Diagnostics(
-            node, lambda: self._joint_states.unreported if self._joint_states else MissingJoints())
+            node, lambda: self._joint_states.unreported if self._joint_states else Unreported())
         self._has_told_of_joints = False
         self._follower = FileFollower(loaded)
         # Simulated time may stand still, so these follow the time of the computer.
@@ -177,7 +177,7 @@ class SdfPoseBridge:
                     parameter.name in ('sdf_file', 'robot_description')
                     for parameter in parameters):
                 loaded = self._load(settings)
-            check_number_of_topics(settings.joint_states_topics, loaded.joint_positions)
+            check_number_of_topics(settings, loaded.joint_positions)
             if loaded is not self._loaded or (
                     settings.pose_topics, settings.publish_transforms) != (
                         self._settings.pose_topics, self._settings.publish_transforms):
@@ -257,7 +257,7 @@ class SdfPoseBridge:
 
     def _frames_from_scene(self, loaded: LoadedScene, settings: Settings) -> PublishedFrames:
         """Prepare whatever can fail."""
-        check_number_of_topics(settings.joint_states_topics, loaded.joint_positions)
+        check_number_of_topics(settings, loaded.joint_positions)
         return frames_from_scene(self._node, loaded, settings, self._frames)
 
     def _lines_from_error(self, error: Exception) -> list[str]:
@@ -290,9 +290,8 @@ class SdfPoseBridge:
             if current is not None:
                 result_from_executor(self._node, self._end_joint_states)
             return
-        topics = joint_state_topics_from_patterns(
-            settings.joint_states_topics, self._loaded.tree.world, moving.positions.models,
-            self._node.resolve_topic_name)
+        topics = state_topics_from_settings(
+            settings, self._loaded.tree.world, moving.positions, self._node.resolve_topic_name)
         # Imported here because it takes 8 ms, and joints do not move by default.
         from sdf_pose_bridge.ros.joint_states import JointStates
         if current is not None:
@@ -351,8 +350,8 @@ class SdfPoseBridge:
             self._logger.warning(line)
         for line in lines_about_scene(loaded):
             self._logger.info(line)
-        if not loaded.tree.moving and not self._has_told_of_joints:
-            options = loaded.request.tf_options
+        options = loaded.request.tf_options
+        if not (options.use_joint_states or self._has_told_of_joints):
             line = line_about_joints_at_rest(loaded.scene, options.model, options.frame_names)
             if line:
                 self._logger.info(line)

@@ -23,6 +23,8 @@ from sdf_pose_bridge.ros.setting_rules import (
     HIGHEST_RATE,
     kinds_setting,
     LOWEST_RATE,
+    model_name_setting,
+    optional_topic_patterns_setting,
     path_setting,
     patterns_setting,
     prefix_setting,
@@ -30,6 +32,7 @@ from sdf_pose_bridge.ros.setting_rules import (
     refusal,
     root_frame_setting,
     separator_setting,
+    simulator_setting,
     topic_patterns_setting,
 )
 from sdf_pose_bridge.sdformat.limits import MissingInclude
@@ -110,7 +113,8 @@ def _choice(default: Choice, description: str) -> Declaration[Choice]:
     return Declaration(default.value, description, rule, setting)
 
 
-def _rate(description: str, zero: str, highest: float) -> Declaration[float]:
+def _rate(
+    description: str, zero: str, highest: float, default: float = 0.0) -> Declaration[float]:
     """
     Declare a parameter whose values are rates in Hz.
 
@@ -124,7 +128,8 @@ def _rate(description: str, zero: str, highest: float) -> Declaration[float]:
             raise refusal(value, rule)
         return value
 
-    return Declaration(0.0, description, rule, setting, needs_load=False, maximum=highest)
+    return Declaration(
+        default, description, rule, setting, needs_load=False, maximum=highest)
 
 
 class Settings:
@@ -190,6 +195,13 @@ class Settings:
         'the name of a model as in SDF: robot, or robot::arm for a nested one',
         str,
     )
+    model_name = Declaration(
+        '',
+        'The name under which the model of a model file or URDF was spawned; it replaces the name '
+        'in the file, and with frame_names "auto" precedes frame ids as in messages of Gazebo.',
+        'the name of a model; that of the file if empty',
+        model_name_setting,
+    )
     frame_names = _choice(
         FrameNames.AUTO,
         'Names of models in frame ids: "scoped" keeps the names of all models (robot/arm/tool), '
@@ -253,9 +265,36 @@ class Settings:
         topic_patterns_setting,
         needs_load=False,
     )
+    model_pose_topics = Declaration(
+        [],
+        'Topics of poses of models that move: PoseStamped, PoseWithCovarianceStamped, '
+        'TransformStamped and Odometry, with {model} for each model; TFMessage names models in '
+        'its child frame ids. A pose is that of the model frame. {world} stands for the world.',
+        'names of topics, such as /vrpn_mocap/{model}/pose; at most 1000 of them, of at most 255 '
+        'characters',
+        optional_topic_patterns_setting,
+    )
+    model_pose_frames = Declaration(
+        [],
+        'Frames in the headers of these messages that are the same as root_frame.',
+        'glob patterns for frame ids, such as */odom; at most 1000 patterns of at most 255 '
+        'characters',
+        patterns_setting,
+    )
+    simulator = Declaration(
+        '',
+        'The node of a simulator that is asked for the poses of models, by its service '
+        'get_entities_states of the package simulation_interfaces.',
+        'the name of a node, such as /gzserver; none if empty',
+        simulator_setting,
+    )
+    simulator_rate = _rate(
+        'Most calls of the simulator in a second; 0.0 for none.', 'for none', HIGHEST_RATE,
+        default=20.0,
+    )
     unreported_joints = _choice(
         UnreportedJoints.NONE,
-        'For joints that no message on joint_states has named: with "none", the frames that they '
+        'For joints and models that no message has reported: with "none", the frames that they '
         'move are not published; with "zero", they are where the file puts them.',
     )
     resource_paths = Declaration(
@@ -305,8 +344,13 @@ class Settings:
     @property
     def tf_options(self) -> TfOptions:
         """The settings of the TF tree; parameters and options have the same names."""
+        values = {
+            name: value for name, value in self.values.items() if name in TfOptions._fields}
+        if self.model_name and self.frame_names is FrameNames.AUTO:
+            values['frame_names'] = FrameNames.SCOPED
         return TfOptions(
-            **{name: value for name, value in self.values.items() if name in TfOptions._fields},
+            **values,
+            follows_models=bool(self.model_pose_topics or self.simulator),
             has_joint_links=self.description_format is DescriptionFormat.URDF)
 
     @property
@@ -314,7 +358,7 @@ class Settings:
         """The request for a load with these settings."""
         return LoadRequest(
             self.sdf_file, self.robot_description, self.resource_paths, self.on_missing_include,
-            self.tf_options, self.unreported_joints, self.description_format)
+            self.tf_options, self.unreported_joints, self.description_format, self.model_name)
 
     def needs_load_after(self, before: Settings) -> bool:
         """

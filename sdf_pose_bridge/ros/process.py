@@ -164,7 +164,7 @@ def _exit_code_from_node(
             publishers.opened(TF_STATIC)
             with _interrupted_by_signals():
                 loaded = call.result()
-        check_number_of_topics(settings.joint_states_topics, loaded.joint_positions)
+        check_number_of_topics(settings, loaded.joint_positions)
     except (SdfError, SettingsError, AddressError) as error:
         _log_warnings(node, [
             warning for warning in (error.warnings if isinstance(error, SdfError) else ())

@@ -153,6 +153,7 @@ class PublishedMovingFrames:
         positions: JointPositions, pose_topics: Mapping[int, Topic],
     ) -> None:
         self._publishers = publishers
+        self.tree = tree
         self.frames = moving
         self.positions = positions
         # The last stamp of each moving transform.

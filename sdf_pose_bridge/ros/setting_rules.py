@@ -15,7 +15,7 @@ from pathlib import Path
 from rclpy.exceptions import InvalidTopicNameException
 from rclpy.validate_topic_name import validate_topic_name
 
-from sdf_pose_bridge.names import printable, shortened
+from sdf_pose_bridge.names import printable, SEPARATOR, shortened
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.anchors import AnchorModels, AnchorPatterns, anchors_from_text
 
@@ -27,7 +27,7 @@ AUTO_KINDS = 'auto'
 """The name for the default kinds of the format of the file."""
 
 MODEL_FIELD, WORLD_FIELD = '{model}', '{world}'
-"""Placeholders for a model and for the world in ``joint_states_topics``."""
+"""Placeholders for a model and for the world in names of topics."""
 
 LOWEST_RATE = 0.001
 """The lowest rate in Hz, except 0.0."""
@@ -97,22 +97,46 @@ def patterns_setting(values: Sequence[str]) -> tuple[str, ...]:
 
 
 def topic_patterns_setting(values: Sequence[str]) -> tuple[str, ...]:
-    """Reject texts that do not become names of topics."""
+    """Reject texts that do not become names of topics, and none."""
     if not values:
         raise refusal([], 'at least one name of a topic')
+    return optional_topic_patterns_setting(values)
+
+
+def optional_topic_patterns_setting(values: Sequence[str]) -> tuple[str, ...]:
+    """Reject texts that do not become names of topics."""
     for value in patterns_setting(values):
         name = value.replace(MODEL_FIELD, 'model').replace(WORLD_FIELD, 'world')
         if '{' in name or '}' in name:
             raise refusal(
                 value, f'the name of a topic with no other braces than {MODEL_FIELD} and '
                 f'{WORLD_FIELD}')
-        try:
-            validate_topic_name(name)
-        except InvalidTopicNameException as error:
-            # The other lines show the name and the place.
-            reason = str(error).partition('\n')[0].partition(': ')[2].rstrip(':')
-            raise refusal(value, f'the name of a topic: {reason}') from None
+        _check_ros_name(value, name, 'the name of a topic')
     return tuple(values)
+
+
+def simulator_setting(value: str) -> str:
+    """Reject texts that are no name of a node, which precedes the name of a service."""
+    _check_length(value, MOST_CHARACTERS)
+    if value:
+        _check_ros_name(value, value, 'the name of a node, such as /gzserver')
+    return value.rstrip('/')
+
+
+def model_name_setting(value: str) -> str:
+    """Reject texts that are no name of a single model."""
+    if SEPARATOR in value or value.startswith('/'):
+        raise refusal(value, f'the name of one model, without "{SEPARATOR}" and a leading slash')
+    return _name_setting(value, MOST_CHARACTERS)
+
+
+def _check_ros_name(value: str, name: str, what: str) -> None:
+    try:
+        validate_topic_name(name)
+    except InvalidTopicNameException as error:
+        # The other lines show the name and the place.
+        reason = str(error).partition('\n')[0].partition(': ')[2].rstrip(':')
+        raise refusal(value, f'{what}: {reason}') from None
 
 
 def anchors_setting(value: str) -> AnchorModels | AnchorPatterns:

@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Choose the frames that get a pose topic, and name the topics; name the topics of joint states.
+Choose the frames that get a pose topic, and name the topics; name the topics that are followed.
 
 A frame id may contain any character that XML allows. A level of a topic name consists of ASCII
 letters, digits and underscores and starts with a letter (if it starts with an underscore, it is
@@ -31,8 +31,9 @@ from fnmatch import fnmatchcase
 import re
 from typing import NamedTuple
 
+from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.ros.log_lines import names_in_line
-from sdf_pose_bridge.ros.parameters import SettingsError
+from sdf_pose_bridge.ros.parameters import Settings, SettingsError
 from sdf_pose_bridge.ros.setting_rules import MODEL_FIELD, WORLD_FIELD
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 
@@ -79,12 +80,14 @@ class PoseTopics(NamedTuple):
     """A warning about patterns that match no frame id, or the reason if there are no topics."""
 
 
-class JointStateTopics(NamedTuple):
-    """The topics of joint states."""
+class StateTopics(NamedTuple):
+    """The topics of joint states and of poses of models."""
 
-    models: dict[str, str]
+    joint_states: dict[str, str]
     """The top-level model whose joints are on each topic, by the name of the topic before it is
     remapped; empty if the joints of all models can be."""
+    model_poses: dict[str, str] = {}  # noqa: RUF012 - is not changed
+    """The scoped name of the free model whose pose is on each topic, likewise."""
     warnings: tuple[str, ...] = ()
     """A sentence about each topic that differs from the patterns."""
 
@@ -159,25 +162,48 @@ def pose_topics_from_patterns(
         if unmatched else '')
 
 
-def joint_state_topics_from_patterns(
-    patterns: Sequence[str], world: str, models: Sequence[str],
-    full_name: Callable[[str], str],
-) -> JointStateTopics:
+def state_topics_from_settings(
+    settings: Settings, world: str, positions: JointPositions, full_name: Callable[[str], str],
+) -> StateTopics:
     """
-    Name the topics of joint states.
+    Name the topics of joint states and of poses of models.
+
+    :param world: the name of the world; empty for a model file.
+    :param positions: the joints and the free models.
+    :param full_name: returns the full name of a topic, after it is remapped.
+    """
+    joint_states, warnings = topics_from_patterns(
+        'joint_states_topics', settings.joint_states_topics, world, positions.models, full_name,
+        'there is no world with a model that has moving joints; joint_states names one for all '
+        'joints') if settings.use_joint_states else ({}, [])
+    model_poses, others = topics_from_patterns(
+        'model_pose_topics', settings.model_pose_topics, world, positions.free_models, full_name,
+        f'there is no world for {WORLD_FIELD}, or no model that can move')
+    if settings.tf_options.follows_models and not positions.free_models:
+        others = [(
+            'no model follows poses: all models are static, connected to the world by a joint, or '
+            'left to others by anchor_models')]
+    return StateTopics(joint_states, model_poses, (*warnings, *others))
+
+
+def topics_from_patterns(
+    parameter: str, patterns: Sequence[str], world: str, models: Sequence[str],
+    full_name: Callable[[str], str], reason_for_none: str,
+) -> tuple[dict[str, str], list[str]]:
+    """
+    Name topics.
 
     :param patterns: names of topics, in which ``{model}`` and ``{world}`` stand for names in a
         world. Without a world, patterns with them name no topic.
-    :param world: the name of the world; empty for a model file.
-    :param models: its top-level models with moving joints.
-    :param full_name: returns the full name of a topic, after it is remapped.
+    :return: the model of each topic, and the warnings, as in :class:`StateTopics`.
     """
     places: dict[str, list[tuple[str, str]]] = {}
     for pattern in dict.fromkeys(patterns):
         if WORLD_FIELD in pattern and not world:
             continue
         for model in models if MODEL_FIELD in pattern else ('',):
-            name = pattern.replace(MODEL_FIELD, topic_name_from_frame_id(model)).replace(
+            frame_id = model.replace(SEPARATOR, '/')
+            name = pattern.replace(MODEL_FIELD, topic_name_from_frame_id(frame_id)).replace(
                 WORLD_FIELD, topic_name_from_frame_id(world))
             places.setdefault(full_name(name), []).append((name, model))
     topics, too_long, warnings = {}, [], []
@@ -186,9 +212,9 @@ def joint_state_topics_from_patterns(
         owners = dict.fromkeys(owner for _, owner in found)
         if len(owners) > 1:
             warnings.append(
-                f'joint_states_topics has {full} for '
-                f'{names_in_line([each or "all models" for each in owners])}, so that it can '
-                'move the joints of all models')
+                f'{parameter} has {full} for '
+                f'{names_in_line([each or "all models" for each in owners])}, so messages on it '
+                'can be about all models')
             model = ''
         if len(full) <= LONGEST_FULL_NAME:
             topics[name] = model
@@ -196,31 +222,33 @@ def joint_state_topics_from_patterns(
             too_long += [owner for _, owner in found]
     if too_long:
         warnings.insert(
-            0, f'no topic of joint states for {names_in_line(too_long)}: its name would be longer '
+            0, f'{parameter} has no topic for {names_in_line(too_long)}: its name would be longer '
             'than the middleware allows')
-    if not places:
-        warnings.append(
-            'joint_states_topics names no topic, because there is no world with a model that has '
-            'moving joints; joint_states names one for all joints')
-    return JointStateTopics(topics, tuple(warnings))
+    if patterns and not places:
+        warnings.append(f'{parameter} names no topic, because {reason_for_none}')
+    return topics, warnings
 
 
-def check_number_of_topics(patterns: Sequence[str], positions: JointPositions | None) -> None:
+def check_number_of_topics(settings: Settings, positions: JointPositions | None) -> None:
     """
-    Check that there would not be too many topics of joint states.
+    Check that there would not be too many topics of joint states, or of poses of models.
 
-    :param patterns: as for :func:`joint_state_topics_from_patterns`.
-    :param positions: the positions of the joints; None if joints move nothing.
+    :param positions: the joints and the free models; None if nothing moves.
     :raises SettingsError: if there would be.
     """
-    models = () if positions is None else positions.models
-    count = sum(len(models) if MODEL_FIELD in each else 1 for each in dict.fromkeys(patterns))
-    if count > MOST_BY_DEFAULT:
-        sentence = (
-            f'joint_states_topics names {count} topics with {len(models)} models that have moving '
-            f'joints, and at most {MOST_BY_DEFAULT} are allowed; set it without {MODEL_FIELD}, or '
-            'publish some of the models by another node')
-        raise SettingsError([sentence])
+    models = {
+        'joint_states_topics': (settings.joint_states_topics, () if positions is None
+                                else positions.models, 'models that have moving joints'),
+        'model_pose_topics': (settings.model_pose_topics, () if positions is None
+                              else positions.free_models, 'models that can move')}
+    for parameter, (patterns, found, what) in models.items():
+        count = sum(len(found) if MODEL_FIELD in each else 1 for each in dict.fromkeys(patterns))
+        if count > MOST_BY_DEFAULT:
+            sentence = (
+                f'{parameter} names {count} topics with {len(found)} {what}, and at most '
+                f'{MOST_BY_DEFAULT} are allowed; set it without {MODEL_FIELD}, or publish some of '
+                'the models by another node')
+            raise SettingsError([sentence])
 
 
 def _level_from_text(text: str) -> str:

@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The scene: all elements of a file with their resolved poses, as arrays."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -167,6 +169,15 @@ class Scene(ReadOnly):
     def world_of(self, index: int) -> str:
         """Return the name of the world of an element; empty in a model file."""
         return self.world_names.get(self.roots.item(index), '')
+
+    def with_model_name(self, name: str) -> Scene:
+        """Return the scene of a model file with another name of its model; of a world itself."""
+        before = self._only_model.removesuffix(SEPARATOR)
+        if not (name and before):
+            return self
+        return replace(self, names=tuple(
+            name + each.removeprefix(before) if (each + SEPARATOR).startswith(self._only_model)
+            else each for each in self.names))
 
     def has(self, name: str) -> bool:
         """Return whether an element has an absolute name, in any world."""

@@ -173,7 +173,7 @@ def frames_at_joints(
     used = {root_frame, *frames.ids}
     found = []
     for index, (dof, body) in enumerate(
-            zip(motion.dofs, motion.moved_bodies.tolist(), strict=True)):
+            zip(motion.dofs, motion.moved_bodies.tolist(), strict=False)):
         pose = scene.pose_of(dof.joint.element)
         is_last = motion.last_dofs[body] == index
         if is_last and is_same_place(relative_pose(pose, scene.pose_of(body))):

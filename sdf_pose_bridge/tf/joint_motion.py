@@ -1,12 +1,16 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Move the elements of a scene, and its frames in TF, by the positions of its joints.
+Move the elements of a scene, and its frames in TF, by positions of joints and poses of models.
 
 Poses in the root are products of exponentials: each degree of freedom between the root and an
 element displaces it by a rotation about, and a translation along, the axis where the file puts it.
 Source: Lynch and Park, Modern Robotics, chapter 4. That axis is fixed in the parent of its joint,
-or for the second axis of a joint in the body between both axes.
+or for the second axis of a joint in the body between both axes. A free model is displaced from its
+pose in the file to another pose; it counts as one degree of freedom, after those of all joints.
+
+Coordinates are the positions of the joints' degrees of freedom, in radians or metres, and then the
+seven numbers of the pose of each free model in the root: x y z in metres, quaternion x y z w.
 """
 
 from __future__ import annotations
@@ -63,6 +67,15 @@ class DegreeOfFreedom(NamedTuple):
         return bool(self.rad_per_unit and self.m_per_unit)
 
 
+class FreeModel(NamedTuple):
+    """A model that moves freely in the root; it counts as one degree of freedom."""
+
+    element: int
+    name: str
+    """Its name, made like those of joints."""
+    scoped_name: str
+
+
 def dofs_from_joint(joint: Joint, name: str = '') -> list[DegreeOfFreedom]:
     """
     List the degrees of freedom of a joint.
@@ -81,6 +94,33 @@ def dofs_from_joint(joint: Joint, name: str = '') -> list[DegreeOfFreedom]:
             joint.axes[axis] if isinstance(axis, int) else JointAxis(axis),
             *rad_and_m_per_unit[motion])
         for motion, axis, suffix in JOINT_TYPES[joint.type]]
+
+
+class Motions:
+    """
+    Products of a constant pose, the displacement by a degree of freedom, and a constant pose.
+
+    :param dofs: shape (k,), the degrees of freedom.
+    :param screws: the screw motions of joints; rows of free models are not used.
+    :param free_rows: shape (m,), the rows of free models. The constant pose before is the
+        identity there, since only the root is before them.
+    :param coordinates: shape (m, 7), the coordinates of these.
+    :param in_models: shape (m, 7), the constant pose after, in the model where the file puts it.
+    """
+
+    def __init__(
+        self, dofs: Indices, screws: ScrewMotions, free_rows: NDArray[np.intp],
+        coordinates: NDArray[np.intp], in_models: PoseArray,
+    ) -> None:
+        self._dofs, self._screws, self._free_rows = dofs, screws, free_rows
+        self._coordinates, self._in_models = coordinates, in_models
+
+    def poses(self, values: Floats) -> PoseArray:
+        """Return the products at coordinates; shapes (n,) and (k, 7)."""
+        poses = self._screws.poses(values[self._dofs])
+        if len(self._free_rows):
+            poses[self._free_rows] = pose_products(values[self._coordinates], self._in_models)
+        return poses
 
 
 class JointMotion:
@@ -108,11 +148,19 @@ class JointMotion:
         self.joint_names = dict(zip(joints.tolist(), names, strict=True))
         """The name of each joint, also of a fixed one, by its element."""
         self.dofs = tuple(dofs)
-        """All degrees of freedom; the ones of a joint are adjacent, in order from the root. The
-        axis is reversed if the moved body is the parent of the joint."""
+        """The degrees of freedom of joints; the ones of a joint are adjacent, in order from the
+        root. The axis is reversed if the moved body is the parent of the joint."""
+        models = list(tf_parents.free_models.values())
+        names = FrameNaming(frame_names).frame_ids_from_scene(scene, np.array(models, np.int32))
+        self.free_models = tuple(
+            FreeModel(model, name, scene.names[model])
+            for model, name in zip(models, names, strict=True))
+        """The free models, each of which is one degree of freedom after those of joints."""
+        bodies += tf_parents.free_models
         self.moved_bodies: Indices = np.array(bodies, np.int32)
-        """The body at the end of the joint of each degree of freedom."""
-        indices = np.arange(len(dofs), dtype=np.int32)
+        """The body that each degree of freedom moves: the one at the end of the joint, or the
+        canonical link of the model."""
+        indices = np.arange(len(bodies), dtype=np.int32)
         last_of_elements = np.full(len(scene.kinds), NO_DOF, np.int32)
         # Of several degrees of freedom of a joint, the last one stays.
         last_of_elements[bodies] = indices
@@ -125,27 +173,45 @@ class JointMotion:
             np.diff(self.moved_bodies, prepend=-1), last_of_elements[tf_parents.parents[bodies]],
             indices - 1)
         """For each degree of freedom the previous one on the path from the root; -1 for none."""
-        poses = scene.poses[[each.joint.element for each in dofs]]
-        values = np.reshape(
+        poses = scene.poses[[*(each.joint.element for each in dofs), *models]]
+        values = np.zeros((len(bodies), 5))
+        values[:len(dofs)] = np.reshape(
             [(*each.axis.xyz, each.rad_per_unit, each.m_per_unit) for each in dofs], (-1, 5))
         axes = transformed_points(poses, values[:, :3]) - poses[:, :3]
+        self._poses = poses
         self._screws = axes, poses[:, :3], values[:, 3], values[:, 4]
-        identities = np.tile(Pose(), (len(dofs), 1))
-        self._displacements = self.screw_motions(identities, indices, identities)
+        self.initial_coordinates = np.append(np.zeros(len(dofs)), poses[len(dofs):])
+        """The coordinates where the file puts everything."""
+        identities = np.tile(Pose(), (len(bodies), 1))
+        self._displacements = self.motions(identities, indices, identities)
 
-    def screw_motions(
-        self, before: PoseArray, dofs: Indices, after: PoseArray) -> ScrewMotions:
-        """Return the motions by some degrees of freedom, as :class:`ScrewMotions` does."""
-        axes, points, rad_per_unit, m_per_unit = (each[dofs] for each in self._screws)
-        return ScrewMotions(before, axes, points, rad_per_unit, m_per_unit, after)
+    def coordinates(self, dofs: NDArray[np.integer]) -> NDArray[np.intp]:
+        """Return the indices of the coordinates of free models, shape (k, 7)."""
+        count = len(self.dofs)
+        found: NDArray[np.intp] = (count + 7 * (dofs - count))[:, np.newaxis] + np.arange(7)
+        return found
 
-    def moved_poses(self, poses: PoseArray, elements: Indices, positions: Floats) -> PoseArray:
+    def motions(self, before: PoseArray, dofs: Indices, after: PoseArray) -> Motions:
         """
-        Return poses at given positions of the joints.
+        Return the motions of poses by some degrees of freedom.
+
+        :param before: shape (k, 7), the constant poses before them.
+        :param dofs: shape (k,), the degrees of freedom.
+        :param after: shape (k, 7), the constant poses after them, where the file puts everything.
+        """
+        axes, points, rad_per_unit, m_per_unit = (each[dofs] for each in self._screws)
+        free = np.flatnonzero(dofs >= len(self.dofs))
+        return Motions(
+            dofs, ScrewMotions(before, axes, points, rad_per_unit, m_per_unit, after), free,
+            self.coordinates(dofs[free]), relative_poses(self._poses[dofs[free]], after[free]))
+
+    def moved_poses(self, poses: PoseArray, elements: Indices, values: Floats) -> PoseArray:
+        """
+        Return poses at given coordinates.
 
         :param poses: shape (k, 7), poses in the root where the file puts them.
         :param elements: shape (k,), the element that each moves with.
-        :param positions: shape (n,), the position of each degree of freedom, in radians or metres.
+        :param values: shape (n,), the coordinates.
         :return: shape (k, 7), poses in the root; unit quaternions with w >= 0.
         """
         last = self.last_dofs[elements]
@@ -153,7 +219,7 @@ class JointMotion:
         moved: PoseArray = poses.copy()
         if len(rows):
             # The root comes last, at the index -1.
-            edges = np.concatenate([self._displacements.poses(positions), [Pose()]])
+            edges = np.concatenate([self._displacements.poses(values), [Pose()]])
             ends = np.append(self.previous % len(edges), NO_DOF)
             displacements = poses_along_chains(edges, ends, np.arange(len(edges)))
             moved[rows] = pose_products(displacements[last[rows]], poses[rows])
@@ -176,11 +242,11 @@ class JointMotion:
 
 class MovingFrames:
     """
-    The frames whose transforms depend on the positions of joints.
+    The frames whose transforms depend on the positions of joints or the poses of free models.
 
     The path from the parent of a frame to the frame crosses degrees of freedom: most often one,
-    more for joints with several, or if frames between both are not published. Methods take the
-    position of each degree of freedom, shape (n,), in radians or metres.
+    more for joints with several, or if frames between both are not published. Methods take
+    coordinates, shape (n,).
 
     :param poses: shape (n, 7): pose of each frame in the root.
     :param parents: index of the parent of each frame, or :data:`ROOT_IS_PARENT`, or
@@ -194,8 +260,6 @@ class MovingFrames:
         pose_frame: int = -1,
     ) -> None:
         self.motion = motion
-        self.dofs = motion.dofs
-        """The degrees of freedom, in the order of positions."""
         self.elements = elements
         """The element that each frame, also one that does not move, moves with."""
         last = motion.last_dofs[elements]
@@ -224,20 +288,20 @@ class MovingFrames:
         while len(rows):
             previous = motion.previous[dofs]
             is_first = previous == self._last_dofs_of_parents[rows]
-            self._parts.append((rows, dofs, motion.screw_motions(
+            self._parts.append((rows, motion.motions(
                 np.where(is_first[:, np.newaxis], before[rows], identities[rows]), dofs,
                 after[rows])))
             rows, dofs, after = rows[~is_first], previous[~is_first], identities
 
-    def transforms(self, positions: NDArray[np.float64]) -> PoseArray:
+    def transforms(self, values: Floats) -> PoseArray:
         """
         Return the transforms of the frames that move in their parents.
 
         :return: shape (m, 7), pose of each frame in its parent; unit quaternions with w >= 0.
         """
         transforms = np.empty((0, 7))
-        for number, (rows, dofs, motions) in enumerate(self._parts):
-            poses = motions.poses(positions[dofs])
+        for number, (rows, motions) in enumerate(self._parts):
+            poses = motions.poses(values)
             if number:
                 transforms[rows] = pose_products(poses, transforms[rows])
             else:
@@ -247,21 +311,22 @@ class MovingFrames:
         quaternions *= np.copysign(1.0, quaternions[:, 3:])
         return transforms
 
-    def poses(self, positions: NDArray[np.float64]) -> PoseArray:
+    def poses(self, values: Floats) -> PoseArray:
         """
         Return the poses of the frames that move in the frame that poses are given in.
 
         :return: shape (k, 7), pose of each of :attr:`posed_indices` in that frame; unit
             quaternions with w >= 0.
         """
-        poses = self._moved(self.posed_indices, positions)
+        poses = self.poses_in_root(self.posed_indices, values)
         if self._pose_frame < 0:
             return poses
         return canonical_relative_poses(
-            self._moved(np.array([self._pose_frame]), positions)[0], poses)
+            self.poses_in_root(np.array([self._pose_frame]), values)[0], poses)
 
-    def _moved(self, frames: NDArray[np.intp], positions: NDArray[np.float64]) -> PoseArray:
-        return self.motion.moved_poses(self._poses[frames], self.elements[frames], positions)
+    def poses_in_root(self, frames: NDArray[np.intp], values: Floats) -> PoseArray:
+        """Return the poses of some frames in the root, shape (k, 7)."""
+        return self.motion.moved_poses(self._poses[frames], self.elements[frames], values)
 
     def depends_on(self, is_chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Return which of :meth:`transforms` depend on chosen degrees of freedom, shape (m,)."""

@@ -1,11 +1,12 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-The current positions of joints, by the names that ``joint_states`` uses.
+The current positions of joints and poses of free models, by the names that messages use.
 
 A joint is named like a frame id (``arm/elbow``), or as in SDF (``arm::elbow``). The names of
 models around it can be left out if the rest is unambiguous. A second axis is called
 ``<joint>_axis2``; a ball joint has ``<joint>_roll``, ``<joint>_pitch`` and ``<joint>_yaw``.
+A free model has its name as in SDF or as a frame id.
 """
 
 from __future__ import annotations
@@ -69,6 +70,8 @@ class Selection(NamedTuple):
     """The entries of the list that name degrees of freedom."""
     dofs: NDArray[np.intp]
     """The degree of freedom of each of these entries."""
+    coordinates: NDArray[np.intp]
+    """The coordinates of each: shape (k,) for joints, (k, 7) for free models."""
     followers: tuple[Follower, ...]
     """Other degrees of freedom that follow these; each after its leader."""
     changed: list[int]
@@ -79,51 +82,68 @@ class Selection(NamedTuple):
 
 class JointPositions:
     """
-    The positions of the degrees of freedom of a scene; at first zero, or the only position.
+    The coordinates of a scene; at first everything is where the file puts it.
 
     The positions of joints whose lower limit is the upper one are known from the beginning.
 
     :param model: the scoped name of the only model whose joints have names; empty for all.
-    :param unreported: whether joints without a reported position count as being at zero.
+    :param unreported: whether joints without a reported position count as being at zero, and free
+        models without a reported pose as being where the file puts them.
+    :param is_spawned: whether the model of a model file is one of several in a world.
     """
 
     def __init__(
-        self, scene: Scene, dofs: Sequence[DegreeOfFreedom], model: str = '',
-        unreported: UnreportedJoints = UnreportedJoints.NONE,
+        self, scene: Scene, motion: JointMotion, model: str = '',
+        unreported: UnreportedJoints = UnreportedJoints.NONE, *, is_spawned: bool = False,
     ) -> None:
-        self.names = tuple(each.name for each in dofs)
+        dofs = motion.dofs
+        self.names = (*(each.name for each in dofs), *(each.name for each in motion.free_models))
         """The name of each degree of freedom."""
-        self._is_fixed = np.array([
+        count = len(self.names)
+        self._is_fixed = np.zeros(count, np.bool_)
+        self._is_fixed[:len(dofs)] = [
             each.axis.lower == each.axis.upper and abs(each.axis.lower) <= LARGEST_POSITION
-            for each in dofs], np.bool_)
-        self.values = np.where(self._is_fixed, [each.axis.lower for each in dofs], 0.0)
-        """The position of each degree of freedom, in radians or metres. A change is another array,
-        so that another thread has all values of one time."""
-        self._stamps_of_values_ns = np.full(len(dofs), _UNREPORTED)
+            for each in dofs]
+        self.values = motion.initial_coordinates.copy()
+        """The coordinates. A change is another array, so that another thread has all values of one
+        time."""
+        fixed = np.flatnonzero(self._is_fixed)
+        self.values[fixed] = [dofs[dof].axis.lower for dof in fixed]
+        self._motion = motion
+        self._stamps_of_values_ns = np.full(count, _UNREPORTED)
         self.reported_count = 0
         """Number of degrees of freedom that :attr:`is_reported` has."""
         self._unreported = unreported
-        self._joints = [each.joint.element for each in dofs]
-        top_level_elements = [scene.top_level_element(joint) for joint in self._joints]
+        self._elements = [
+            *(each.joint.element for each in dofs),
+            *(each.element for each in motion.free_models)]
+        top_level_elements = list(map(scene.top_level_element, self._elements))
         # The top-level models have numbers.
         elements, self._models = np.unique(top_level_elements, return_inverse=True)
         self._stamps_of_models_ns = [NEVER] * len(elements)
-        self._indices = _indices_from_names(scene, dofs, top_level_elements, model)
+        self._indices = _indices_from_names(
+            scene, dofs, top_level_elements[:len(dofs)], model,
+            has_models=is_spawned or bool(scene.world_names))
         self._slides = frozenset(each.name + SLIDE_SUFFIX for each in dofs if each.is_screw)
         self._followers: dict[int, list[Follower]] = {}
-        self._is_free = np.ones(len(dofs), np.bool_)
+        self._is_leader = np.ones(len(self.names), np.bool_)
         leaders = {(each.joint.element, each.number): dof for dof, each in enumerate(dofs)}
         for dof, each in enumerate(dofs):
             mimic = each.axis.mimic
             if mimic is not None and (mimic.joint, mimic.axis) in leaders:
                 leader = leaders[mimic.joint, mimic.axis]
                 self._followers.setdefault(leader, []).append(Follower(dof, leader, mimic))
-                self._is_free[dof] = False
+                self._is_leader[dof] = False
 
     @property
     def models(self) -> tuple[str, ...]:
         """The top-level models of a world that have such names; none in a model file."""
         return tuple(filter(None, self._indices))
+
+    @property
+    def free_models(self) -> tuple[str, ...]:
+        """The scoped names of the free models."""
+        return tuple(each.scoped_name for each in self._motion.free_models)
 
     @property
     def is_known(self) -> NDArray[np.bool_]:
@@ -143,12 +163,25 @@ class JointPositions:
         """The newest stamp of a message about the top-level model of each."""
         return np.array(self._stamps_of_models_ns, np.int64)[self._models]
 
-    def unreported(self) -> list[str]:
-        """Return a name of each joint without a known position that does not follow another."""
-        names: dict[int, str] = {}
-        for dof in np.flatnonzero(self._is_free & ~self.is_known).tolist():
-            names.setdefault(self._joints[dof], self.names[dof])
-        return list(names.values())
+    def is_model(self, dof: int) -> bool:
+        """Return whether a degree of freedom is a free model, and not of a joint."""
+        return dof >= len(self._motion.dofs)
+
+    def unreported(self) -> tuple[list[str], list[str]]:
+        """
+        Find what has no known coordinates.
+
+        :return: a name of each such joint that does not follow another, and the names of such
+            free models.
+        """
+        joints: dict[int, str] = {}
+        models = []
+        for dof in np.flatnonzero(self._is_leader & ~self.is_known).tolist():
+            if self.is_model(dof):
+                models.append(self.names[dof])
+            else:
+                joints.setdefault(self._elements[dof], self.names[dof])
+        return list(joints.values()), models
 
     def selection(self, names: Sequence[str], model: str = '') -> Selection:
         """
@@ -165,10 +198,18 @@ class JointPositions:
                 if follower.dof not in reached:
                     reached[follower.dof] = follower
                     changed.append(follower.dof)
+        indices_of_dofs = np.array(dofs, np.intp)
         return Selection(
-            np.array(rows, np.intp), np.array(dofs, np.intp),
+            np.array(rows, np.intp), indices_of_dofs, indices_of_dofs,
             tuple(filter(None, reached.values())), changed,
             np.unique(self._models[changed]).tolist())
+
+    def selection_of_model(self, dof: int) -> Selection:
+        """Return the degree of freedom of a free model, for a message that has its pose alone."""
+        dofs = np.array([dof])
+        return Selection(
+            np.array([0]), dofs, self._motion.coordinates(dofs), (), [dof],
+            self._models[dofs].tolist())
 
     def unknown(self, names: Iterable[str], model: str = '') -> list[str]:
         """Find names that are unknown or ambiguous, in a model as for :meth:`selection`."""
@@ -187,25 +228,27 @@ class JointPositions:
         Set positions.
 
         :param selection: the degrees of freedom of the values.
-        :param values: a value for each name that was looked up, in radians or metres.
+        :param values: a value for each name that was looked up, in radians or metres; or a pose,
+            shape (k, 7).
         :param stamp_ns: their time. A position of a later time stays.
         :param ignore_stamps: whether no position stays.
         :return: the names whose values are not finite or too large; their positions stay.
         """
         dofs, new, invalid = selection.dofs, values[selection.rows], []
+        coordinates = selection.coordinates
         newest_ns = max((self._stamps_of_models_ns[each] for each in selection.models), default=0)
         is_late = stamp_ns < newest_ns and not ignore_stamps
         # Most often all are valid. Comparisons with NaN are false.
         if is_late or not np.abs(new).max(initial=0.0) <= LARGEST_POSITION:
-            is_taken = np.abs(new) <= LARGEST_POSITION
+            is_taken = (np.abs(new) <= LARGEST_POSITION).reshape(len(new), -1).all(axis=1)
             invalid = [self.names[dof] for dof in dofs[~is_taken].tolist()]
             if not ignore_stamps:
                 is_taken &= self._stamps_of_values_ns[dofs] <= stamp_ns
-            dofs, new = dofs[is_taken], new[is_taken]
+            dofs, new, coordinates = dofs[is_taken], new[is_taken], coordinates[is_taken]
         for model in selection.models:
             self._stamps_of_models_ns[model] = max(self._stamps_of_models_ns[model], stamp_ns)
         changed = self.values.copy()
-        changed[dofs] = new
+        changed[coordinates] = new
         self._stamps_of_values_ns[dofs] = stamp_ns
         is_changed = set(dofs.tolist())
         for dof, leader, mimic in selection.followers:
@@ -225,16 +268,27 @@ class JointPositions:
         np.minimum(self._stamps_of_values_ns, NEVER, out=self._stamps_of_values_ns)
 
     def take_over(self, before: JointPositions) -> None:
-        """Continue with the positions that joints of the same names had before."""
-        rows = {name: row for row, name in enumerate(before.names) if before.is_reported[row]}
-        here = [dof for dof, name in enumerate(self.names) if name in rows]
-        there = [rows[self.names[dof]] for dof in here]
+        """Continue with the reported coordinates of joints and models of the same names."""
+        is_reported = before.is_reported
+        rows = {key: row for row, key in enumerate(before._keys()) if is_reported[row]}
+        keys = [(dof, key) for dof, key in enumerate(self._keys()) if key in rows]
+        here = np.array([dof for dof, _ in keys], np.intp)
+        there = np.array([rows[key] for _, key in keys], np.intp)
         self.values = self.values.copy()
-        self.values[here] = before.values[there]
+        self.values[self._coordinates(here)] = before.values[before._coordinates(there)]
         self._stamps_of_values_ns[here] = before._stamps_of_values_ns[there]
         for new, old in zip(self._models[here], before._models[there], strict=True):
             self._stamps_of_models_ns[new] = before._stamps_of_models_ns[old]
         self._count_reported()
+
+    def _keys(self) -> list[tuple[str, bool]]:
+        """Return the name of each degree of freedom, and whether it is a free model."""
+        return [(name, self.is_model(dof)) for dof, name in enumerate(self.names)]
+
+    def _coordinates(self, dofs: NDArray[np.intp]) -> NDArray[np.intp]:
+        """Return the coordinates of joints and then of free models, shape (n,)."""
+        is_joint = dofs < len(self._motion.dofs)
+        return np.append(dofs[is_joint], self._motion.coordinates(dofs[~is_joint]))
 
     def _count_reported(self) -> None:
         self.reported_count = int(np.count_nonzero(self.is_reported))
@@ -253,7 +307,7 @@ def scene_at_positions(scene: Scene, positions: Mapping[str, float]) -> Scene:
         too large.
     """
     motion = JointMotion(scene, tf_parents_from_scene(scene))
-    state = JointPositions(scene, motion.dofs)
+    state = JointPositions(scene, motion)
     selection = state.selection(list(positions))
     invalid = state.update(selection, np.array(list(positions.values()), float))
     for name in state.unknown(positions):
@@ -278,6 +332,7 @@ def scene_at_positions(scene: Scene, positions: Mapping[str, float]) -> Scene:
 
 def _indices_from_names(
     scene: Scene, dofs: Sequence[DegreeOfFreedom], top_level_elements: Sequence[int], model: str,
+    *, has_models: bool,
 ) -> dict[str, dict[str, int]]:
     """
     Return all names of the degrees of freedom, with their indices.
@@ -285,7 +340,8 @@ def _indices_from_names(
     In URDF and in old SDFormat, a joint may have the name of a link; it is then renamed. Its own
     name is still accepted.
 
-    :return: the names for ``''``, and for each top-level model of a world those that mean its own
+    :param has_models: whether messages can be about a single top-level model.
+    :return: the names for ``''``, and for each top-level model, if so, those that mean its own
         degrees of freedom, whatever other models have.
     """
     own: dict[str, dict[str, int]] = {'': {}}
@@ -303,7 +359,7 @@ def _indices_from_names(
             for count in {0, *range(max(len(steps) - _MOST_STEPS, 0), len(steps))}:
                 for separator in (SEPARATOR, '/'):
                     shorter.add(separator.join(steps[count:]) + dof.suffix)
-        is_in_model = scene.world_names and scene.kinds[top] == Kind.MODEL
+        is_in_model = has_models and scene.kinds[top] == Kind.MODEL
         for scope in ('', scene.names[top]) if is_in_model else ('',):
             own.setdefault(scope, {}).setdefault(dof.name, index)
             names = aliases.setdefault(scope, {})

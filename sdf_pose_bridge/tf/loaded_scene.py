@@ -43,6 +43,8 @@ class LoadRequest(NamedTuple):
     tf_options: TfOptions = TfOptions()
     unreported_joints: UnreportedJoints = UnreportedJoints.NONE
     description_format: DescriptionFormat = DescriptionFormat.AS_GIVEN
+    model_name: str = ''
+    """Replaces the name of the model of a model file; empty for the name in the file."""
 
     @property
     def source(self) -> str:

@@ -73,10 +73,15 @@ def loaded_scene_from_request(
     scene = load_text(
         text, path, resource_paths=request.resource_paths,
         on_missing_include=request.on_missing_include, shapes=is_made_urdf, texts=texts)
+    if request.model_name and scene.world_names:
+        msg = 'model_name has no effect, because this is a world and not a file of one model'
+        warnings += (SdfWarning('WARNING', msg, Place(path)),)
+    scene = scene.with_model_name(request.model_name)
     options = request.tf_options
     tree = tf_tree_from_scene(scene, options)
     joint_positions = None if tree.moving is None else JointPositions(
-        scene, tree.moving.dofs, options.model, request.unreported_joints)
+        scene, tree.moving.motion, options.model, request.unreported_joints,
+        is_spawned=bool(request.model_name))
     description = '' if tree.world else unicode_text(text)
     warnings_of_urdf: tuple[SdfWarning, ...] = ()
     if is_made_urdf and scene.urdf_root is None:

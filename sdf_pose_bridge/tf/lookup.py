@@ -65,11 +65,27 @@ class PoseLookup:
         :param frame: a name of SDF or of TF.
         :param relative_to: the reference frame, likewise; empty for the root frame.
         :raises UnknownFrameError: if a name is unknown or ambiguous.
-        :raises JointPositionError: if it depends on a joint without a position.
+        :raises JointPositionError: if it depends on a joint or a model without a reported one.
         """
         found = self._found(frame)
         reference = self._found(relative_to or self._tree.root_frame)
         return FoundPose(self._relative_pose(reference, found), reference.frame_id)
+
+    def pose_beside(self, frame: str, dof: int) -> Pose:
+        """
+        Look up the pose of a frame in the root frame, for a pose of a free model in this frame.
+
+        :param dof: the degree of freedom of the model.
+        :raises SdfError: as :meth:`pose` does, and if the frame moves with the model.
+        """
+        found = self._found(frame)
+        if self._tree.moving is not None:
+            motion = self._tree.moving.motion
+            is_model = np.arange(len(motion.moved_bodies)) == dof
+            if motion.last_chosen(is_model)[motion.last_dofs[found.owner]] == dof:
+                msg = f'"{frame}" moves with the model'
+                raise JointPositionError(msg, Place(self._scene.path))
+        return self._relative_pose(self._found(self._tree.root_frame), found)
 
     def is_frame_id(self, name: str) -> bool:
         """Return whether a frame of TF other than the root frame has a name."""
@@ -128,7 +144,7 @@ class PoseLookup:
         """
         Return the pose of a frame in another one, at the current positions.
 
-        :raises JointPositionError: if it depends on a joint without a position.
+        :raises JointPositionError: if it depends on a joint or a model without a reported one.
         """
         poses, joints, moving = [reference.pose, found.pose], self._joints, self._tree.moving
         if joints is not None and moving is not None:
@@ -139,7 +155,8 @@ class PoseLookup:
                 # One that both depend on moves neither in the other.
                 is_unknown = np.arange(len(joints.names)) == unknown
                 dof = other if motion.last_chosen(is_unknown)[end] == unknown else unknown
-                msg = (f'the pose depends on joint "{joints.names[dof]}", which has not been '
+                what = 'the pose of model' if joints.is_model(dof) else 'joint'
+                msg = (f'the pose depends on {what} "{joints.names[dof]}", which has not been '
                        'reported yet')
                 raise JointPositionError(msg, Place(self._scene.path))
             moved = motion.moved_poses(np.array(poses), owners, joints.values)

@@ -15,11 +15,14 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sdf_pose_bridge.geometry.chains import ends_from_pointers, Indices
+from sdf_pose_bridge.names import scoped_name
 from sdf_pose_bridge.scene.scene import Joint, Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 
@@ -38,6 +41,35 @@ class TfParents(NamedTuple):
     """The joint of each body that a joint connects to its parent."""
     loop_joints: tuple[Joint, ...]
     """Joints that close a loop, which a tree cannot have; in file order."""
+    free_models: Mapping[int, int] = MappingProxyType({})
+    """The models that move freely in their root, by their canonical links."""
+
+    def with_free_models(
+        self, scene: Scene, is_detached: NDArray[np.bool_], only_model: str,
+    ) -> TfParents:
+        """
+        Let models move freely in their root, which becomes the parent of their canonical links.
+
+        Models that a joint connects to another body, and static models, stay as they are.
+
+        :param is_detached: for each element whether it is a body that gets no transform from the
+            root; models in a model with such a body stay too.
+        :param only_model: the scoped name of the only model that is published; empty for all.
+        """
+        published = scoped_name(only_model, '')
+        free_models: dict[int, int] = {}
+        for model in np.flatnonzero(scene.canonical_links >= 0).tolist():
+            link = scene.canonical_links.item(model)
+            top_link = scene.canonical_links.item(scene.top_level_element(model))
+            name = scoped_name(scene.names[model], '')
+            # A model with the canonical link of a model in it comes before that.
+            if not (link in free_models or link in self.joints or scene.is_static(link)
+                    or is_detached[top_link] or scene.roots[model]) and (
+                        name.startswith(published) or published.startswith(name)):
+                free_models[link] = model
+        parents = self.parents.copy()
+        parents[list(free_models)] = 0
+        return self._replace(parents=parents, free_models=free_models)
 
 
 def tf_parents_from_scene(scene: Scene) -> TfParents:

@@ -62,6 +62,9 @@ class TfOptions(NamedTuple):
     """Whether each camera gets an optical frame besides its own."""
     use_joint_states: bool = False
     """Whether moving joints follow ``joint_states``."""
+    follows_models: bool = False
+    """Whether the poses of models come from topics or from a simulator. Then
+    :attr:`AnchorModels.AUTO` means all models."""
     has_joint_links: bool = False
     """Whether the links without mass at joints of URDF are frames too."""
 
@@ -99,7 +102,7 @@ class TfTree(ReadOnly):
     """The frame of each element of the scene, or of the nearest element above it in TF that
     has one; or :data:`ROOT_IS_PARENT`, or :data:`NO_PARENT`."""
     moving: MovingFrames | None
-    """The frames that joints move; None if joints do not follow ``joint_states``."""
+    """The frames that joints and free models move; None if they follow no messages."""
     world: str
     """The name of the world that the frames belong to; empty for a model file."""
     warnings: tuple[SdfWarning, ...]
@@ -120,7 +123,7 @@ class TfTree(ReadOnly):
 
     @cached_property
     def fixed_indices(self) -> NDArray[np.intp]:
-        """The frames with a transform that no joint changes."""
+        """The frames with a transform that no message changes."""
         is_fixed = self.parents != NO_PARENT
         if self.moving is not None:
             is_fixed[self.moving.indices] = False
@@ -160,9 +163,14 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
             and Kind.LINK in _kinds(scene, options)):
         frame_ids = {0: world_link, **frame_ids}
     elements = np.array(list(frame_ids), np.int32)
+    anchors = options.anchor_models
+    if anchors is AnchorModels.AUTO and options.follows_models:
+        anchors = AnchorModels.ALL
+    is_detached = detached_bodies(scene, tf_parents, anchors, problems)
+    if options.follows_models:
+        tf_parents = tf_parents.with_free_models(scene, is_detached, options.model)
     nearest_frames, parents = _nearest_frames_and_parents(
-        scene, tf_parents, elements,
-        detached_bodies(scene, tf_parents, options.anchor_models, problems))
+        scene, tf_parents, elements, is_detached)
     frames = Frames(list(frame_ids.values()), elements, parents, scene.poses[elements])
     check_frames_of_sensors(frames, sensor_names, scene, options.root_frame, naming, problems)
     if options.optical_frames:
@@ -175,9 +183,10 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
                f'"{scene.names[joint.parent]}" and "{scene.names[joint.child]}"; TF is a tree, so '
                'it moves nothing there')
         problems.warning(msg, scene.place(joint.element))
+    is_moving = options.use_joint_states or options.follows_models
     motion = JointMotion(
         scene, tf_parents, options.frame_names,
-    ) if options.use_joint_states or options.has_joint_links else None
+    ) if is_moving or options.has_joint_links else None
     if motion is not None and options.has_joint_links:
         frames = frames.with_frames(frames_at_joints(
             frames, scene, motion, tf_parents, naming, options.root_frame))
@@ -188,9 +197,15 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
         msg = f'there is no frame "{pose_frame}" to be the pose_frame{hint}'
         raise UnknownFrameError(msg, Place(scene.path))
     reference = ids.index(pose_frame) - 1
+    owners = frames.owners
+    if motion is not None and is_moving and not options.use_joint_states:
+        # Frames at joints move with the bodies behind them, as joints stay where they are.
+        owners = np.append(
+            np.arange(len(scene.kinds), dtype=np.int32), motion.moved_bodies)[owners]
+        motion = JointMotion(scene, tf_parents._replace(joints={}), options.frame_names)
     moving = MovingFrames(
-        motion, frames.poses, frames.parents, frames.owners, reference,
-    ) if motion is not None and options.use_joint_states else None
+        motion, frames.poses, frames.parents, owners, reference,
+    ) if motion is not None and is_moving else None
     return TfTree(
         root_frame=options.root_frame,
         frame_ids=tuple(frames.ids),

@@ -133,7 +133,8 @@ def markers_from_text(
     try:
         scene = load_text(
             text, str(path), resource_paths=request.resource_paths,
-            on_missing_include=request.on_missing_include, shapes=True)
+            on_missing_include=request.on_missing_include, shapes=True,
+        ).with_model_name(request.model_name)
     except SdfError:
         return None
     if fingerprint_of_scene(scene) != fingerprint:

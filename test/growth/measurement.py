@@ -24,7 +24,7 @@ def outcome_of_load(path: str) -> str:
         scene = load(path)
         tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
         if tree.moving is not None:
-            JointPositions(scene, tree.moving.dofs)
+            JointPositions(scene, tree.moving.motion)
         fixed = tree.fixed_indices
         StampedRecords(tree.ids_of_transforms(fixed), tree.transforms[fixed]).tf_message()
         PoseLookup(scene, tree)

@@ -10,10 +10,10 @@ from diagnostic_msgs.msg import DiagnosticStatus
 
 from sdf_pose_bridge.ros.diagnostics import Diagnostics, status_from_scene
 from sdf_pose_bridge.ros.given_parameters import settings_from_node
-from sdf_pose_bridge.ros.log_lines import MissingJoints
+from sdf_pose_bridge.ros.log_lines import Unreported
 from sdf_pose_bridge.tf.loading import loaded_scene_from_request
 
-NOTHING_MISSING = MissingJoints()
+NOTHING_MISSING = Unreported()
 LOADED_AT_NS = 1767323045_678900000
 GOOD = '<sdf version="1.10"><model name="m"><link name="l"/></model></sdf>'
 LIGHT = '<light name="i" type="point"><pose relative_to="x"/></light>'
@@ -50,7 +50,7 @@ def test_warnings_of_what_is_served_are_counted(status_of, count, words):
 
 
 def test_joints_that_nobody_reports_are_a_warning(status_of):
-    status = status_of(GOOD, unreported=MissingJoints(2, 'arm/elbow'))
+    status = status_of(GOOD, unreported=Unreported(2, 'arm/elbow'))
     assert status.level == DiagnosticStatus.WARN
     assert status.message.startswith(
         '2 joints have not been reported yet, for example "arm/elbow";')
@@ -74,7 +74,8 @@ def test_the_values_describe_what_is_served_and_what_is_wrong(status_of, tmp_pat
         'file': str(tmp_path / 'cell.sdf'), 'root frame': 'map', 'frames': '2', 'transforms': '1',
         'files read': '1', 'last good load': '2026-01-02T03:04:05+00:00', 'warnings': '0',
         'first warning': '', 'last error': 'first\nsecond', 'joints not reported': '0',
-        'first joint not reported': ''}
+        'first joint not reported': '', 'models not reported': '0',
+        'first model not reported': ''}
 
 
 def test_the_topic_is_there_while_it_is_switched_on(make_node):

@@ -231,7 +231,8 @@ def test_rates_have_a_range(make_node):
         (each.name, number.from_value, number.to_value)
         for each in node.describe_parameters(list(DECLARATIONS))
         for number in each.floating_point_range} == {
-            ('publish_rate', 0.0, 100.0), ('publish_frequency', 0.0, 1000.0)}
+            ('publish_rate', 0.0, 100.0), ('publish_frequency', 0.0, 1000.0),
+            ('simulator_rate', 0.0, 100.0)}
 
 
 @pytest.mark.parametrize('name', DECLARATIONS)
@@ -241,7 +242,8 @@ def test_every_parameter_explains_itself(make_node, name):
     descriptor = node.describe_parameter(name)
     assert descriptor.description.endswith('.')
     assert descriptor.additional_constraints
-    typical = DECLARATIONS[name].default or {'resource_paths': ['']}.get(
+    typical = DECLARATIONS[name].default or {
+        'resource_paths': [''], 'model_pose_topics': [''], 'model_pose_frames': ['']}.get(
         name, DECLARATIONS[name].default)
     assert Parameter.Type(descriptor.type) is Parameter.Type.from_parameter_value(typical)
 

@@ -16,12 +16,12 @@ from sdf_pose_bridge.ros.log_lines import (
     line_about_detached_models,
     line_about_gazebo,
     line_about_joints_at_rest,
-    line_about_unreported_joints,
+    line_about_unreported,
     lines_about_lost_frames,
     lines_from_error,
     lines_from_warnings,
-    MissingJoints,
     MOST_LINES,
+    Unreported,
 )
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.scene.loading import load_text
@@ -110,7 +110,7 @@ def test_frames_that_tf_cannot_forget_are_named():
     (1, '1 joint has not been reported yet, for example "j0";'),
     (3, '3 joints have not been reported yet, for example "j0";')])
 def test_joints_that_nobody_reports_are_counted(count, words):
-    line = line_about_unreported_joints(MissingJoints(count, 'j0', ('/a', '/b')))
+    line = line_about_unreported(Unreported(count, 'j0', ('/a', '/b')))
     assert line.startswith(words)
     assert line.endswith(
         ' until a message on /a or /b names the joint, or with unreported_joints:=zero')
@@ -144,8 +144,8 @@ def test_joints_that_stand_still_are_those_that_messages_have_to_name(content):
     scene = load_text(model_file(
         '<link name="a"/><link name="b"/><link name="c"/>' + content, version='1.11'))
     tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
-    positions = JointPositions(scene, tree.moving.dofs)
-    (first,) = positions.unreported()
+    positions = JointPositions(scene, tree.moving.motion)
+    (first,), _ = positions.unreported()
     line = line_about_joints_at_rest(scene, '', FrameNames.AUTO)
     assert line.startswith(f'1 joint that can move, for example "{first}", stays')
 

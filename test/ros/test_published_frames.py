@@ -24,13 +24,13 @@ from tf_checks import tree_of
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.ros.given_parameters import settings_from_values
 from sdf_pose_bridge.ros.joint_states import JointStates
-from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.published_frames import frames_from_scene, PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
-from sdf_pose_bridge.ros.topic_names import JointStateTopics
+from sdf_pose_bridge.ros.topic_names import StateTopics
 from sdf_pose_bridge.tf.joint_positions import JointPositions, UnreportedJoints
 from sdf_pose_bridge.tf.loaded_scene import LoadRequest
 from sdf_pose_bridge.tf.loading import loaded_scene_from_request
+from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 OTHERS = {'/tf_static', '/bridge/transforms'}
@@ -144,7 +144,7 @@ def frames_of_arm(publishers, before=None, unreported=UnreportedJoints.ZERO, pos
     tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True, pose_frame=pose_frame))
     return PublishedFrames(
         publishers, tree,
-        JointPositions(scene, tree.moving.dofs, unreported=unreported),
+        JointPositions(scene, tree.moving.motion, unreported=unreported),
         {'upper': 'upper', 'base': 'base'}, before)
 
 
@@ -247,9 +247,9 @@ def publish_arm(make_executor, beside):
     def publish(node):
         frames = frames_of_arm(Publishers(node))
         states = beside(
-            make_executor(node), JointStates, node, frames.moving, None,
-            JointStateTopics({'joint_states': ''}),
-            Settings({'publish_frequency': 0.0, 'ignore_timestamp': False}))
+            make_executor(node), JointStates, node, frames.moving,
+            PoseLookup(load_text(ARM), frames.tree, frames.moving.positions),
+            StateTopics({'joint_states': ''}), settings_from_values({'robot_description': ARM}))
         found = {
             each.topic_name: each.qos_profile for each in [*node.publishers, *node.subscriptions]}
         states.end()

@@ -13,15 +13,21 @@ from hypothesis import strategies as st
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from sdf_pose_bridge.ros.parameters import DECLARATIONS
+from sdf_texts import joint, model_file, world_file
+
+from sdf_pose_bridge.ros.given_parameters import settings_from_values
+from sdf_pose_bridge.ros.parameters import DECLARATIONS, SettingsError
 from sdf_pose_bridge.ros.topic_names import (
-    joint_state_topics_from_patterns,
+    check_number_of_topics,
     LONGEST_FULL_NAME,
     LONGEST_NAME,
     pose_topics_from_patterns,
     SHORTEST_LIMIT,
+    state_topics_from_settings,
     topic_name_from_frame_id,
+    topics_from_patterns,
 )
+from sdf_pose_bridge.tf.loading import loaded_scene_from_request
 
 NODE = '/sdf_pose_bridge'
 
@@ -196,7 +202,8 @@ def joint_state_topics(patterns, world='w', models=('r1', 'r2'), remapped=None):
     def full_name(name):
         full = name if name.startswith('/') else f'/n/{name}'
         return (remapped or {}).get(full, full)
-    return joint_state_topics_from_patterns(patterns, world, models, full_name)
+    return topics_from_patterns(
+        'joint_states_topics', patterns, world, models, full_name, 'there is none')
 
 
 @pytest.mark.parametrize(('patterns', 'world', 'models', 'topics'), [
@@ -212,15 +219,15 @@ def joint_state_topics(patterns, world='w', models=('r1', 'r2'), remapped=None):
      {'fleet_x31_': '1', 'fleet_x7b_world_x7d_': '{world}'}),
 ])
 def test_topics_of_joint_states(patterns, world, models, topics):
-    assert joint_state_topics(patterns, world, models) == (topics, ())
+    assert joint_state_topics(patterns, world, models) == (topics, [])
 
 
 @pytest.mark.parametrize(('patterns', 'models', 'topics', 'words'), [
     (['a/{model}', '{model}/b'], ['a', 'b'], {'a/a': 'a', 'a/b': '', 'b/b': 'b'},
-     'joint_states_topics has /n/a/b for "b", "a", so that it can move the joints of all models'),
+     'joint_states_topics has /n/a/b for "b", "a", so messages on it can be about all models'),
     (['joint_states', 'joint_{model}'], ['states', 'r'], {'joint_states': '', 'joint_r': 'r'},
-     'joint_states_topics has /n/joint_states for "all models", "states", so that'),
-    (['{model}/s'], ['r1', 'r2'], {'r1/s': ''}, 'has /n/s for "r1", "r2", so that'),
+     'joint_states_topics has /n/joint_states for "all models", "states", so'),
+    (['{model}/s'], ['r1', 'r2'], {'r1/s': ''}, 'has /n/s for "r1", "r2", so'),
 ])
 def test_a_topic_of_two_models_is_one_of_all(patterns, models, topics, words):
     named, (warning,) = joint_state_topics(
@@ -232,10 +239,59 @@ def test_a_topic_of_two_models_is_one_of_all(patterns, models, topics, words):
 def test_a_model_whose_topic_would_have_too_long_a_name_has_none():
     named, (warning,) = joint_state_topics(['a' * 200 + '/{model}'], models=['r', 'm' * 60])
     assert list(named.values()) == ['r']
-    assert f'no topic of joint states for "{"m" * 60}": its name would be longer' in warning
+    name = 'm' * 60
+    assert f'joint_states_topics has no topic for "{name}": its name would be longer' in warning
 
 
 def test_patterns_that_name_no_topic_of_a_model_file_are_reported():
     named, (warning,) = joint_state_topics(['{model}/joint_states'], '', [])
     assert named == {}
-    assert 'joint_states_topics names no topic' in warning
+    assert warning == 'joint_states_topics names no topic, because there is none'
+
+
+# Topics of poses of models
+
+FREE = world_file(
+    '<model name="a"><link name="l"/><model name="b c"><link name="l"/></model></model>'
+    '<model name="d"><static>true</static><link name="l"/></model>')
+
+
+@pytest.mark.parametrize(('text', 'values', 'model_poses', 'words'), [
+    (FREE, {}, {'/m/a/p': 'a', '/m/a/b_x20_c/p': 'a::b c'}, ()),
+    (FREE, {'model_pose_topics': ['/tf_of_{world}']}, {'/tf_of_w': ''}, ()),
+    (FREE, {'anchor_models': 'static'}, {}, ('no model follows poses',)),
+    (model_file('<link name="l"/>'), {}, {'/m/m/p': 'm'}, ()),
+    (model_file('<link name="l"/>'), {'model_name': 'x'}, {'/m/x/p': 'x'}, ()),
+    (model_file('<link name="l"/>'), {'model_pose_topics': ['{world}']}, {},
+     ('model_pose_topics names no topic, because there is no world',)),
+])
+def test_topics_of_poses_of_models(text, values, model_poses, words):
+    settings = settings_from_values(
+        {'robot_description': text, 'model_pose_topics': ['/m/{model}/p'], **values})
+    loaded = loaded_scene_from_request(settings.load_request)
+    found = state_topics_from_settings(
+        settings, loaded.tree.world, loaded.joint_positions, str)
+    assert (found.joint_states, found.model_poses) == ({}, model_poses)
+    for line, beginning in zip(found.warnings, words, strict=True):
+        assert line.startswith(beginning)
+
+
+def test_the_topics_of_a_spawned_model_have_its_name():
+    settings = settings_from_values({
+        'robot_description': model_file(
+            '<link name="a"/><link name="b"/>' + joint(
+                '<parent>a</parent><child>b</child>', 'j', 'revolute')),
+        'model_name': 'x_0', 'use_joint_states': True})
+    loaded = loaded_scene_from_request(settings.load_request)
+    assert 'x_0/b' in loaded.tree.frame_ids
+    assert state_topics_from_settings(settings, '', loaded.joint_positions, str).joint_states == {
+        'joint_states': '', 'x_0/joint_states': 'x_0'}
+
+
+def test_too_many_topics_of_poses_are_refused():
+    models = ''.join(f'<model name="m{n}"><link name="l"/></model>' for n in range(501))
+    settings = settings_from_values({
+        'robot_description': world_file(models), 'model_pose_topics': ['{model}/a', '{model}/b']})
+    loaded = loaded_scene_from_request(settings.load_request)
+    with pytest.raises(SettingsError, match='model_pose_topics names 1002 topics'):
+        check_number_of_topics(settings, loaded.joint_positions)

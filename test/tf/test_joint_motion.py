@@ -2,10 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Poses of elements at positions of joints, against matrix exponentials; frames that move."""
 
+import math
+
 from joint_trees import link_matrices, model_text, pose_text, POSES, POSITIONS, random_joints
 from matrices import assert_same_pose, matrix_from_degrees, matrix_from_pose
 import numpy as np
 import pytest
+from random_scenes import random_scenes
 from sdf_texts import fixed_joint, joint, model_file, world_file
 
 pytest.importorskip('hypothesis', reason='needs hypothesis')
@@ -31,7 +34,7 @@ def motion_of(text):
 def poses_at(text, positions):
     """Return the pose of each element, by its name, at positions of joints by their names."""
     scene, motion = motion_of(text)
-    state = JointPositions(scene, motion.dofs)
+    state = JointPositions(scene, motion)
     selection = state.selection(list(positions))
     assert not state.unknown(positions)
     state.update(selection, np.array(list(positions.values()), float))
@@ -120,7 +123,7 @@ def moving_tree(text, **options):
 
 
 def known_positions(scene, tree, values):
-    joints = JointPositions(scene, tree.moving.dofs, unreported=UnreportedJoints.ZERO)
+    joints = JointPositions(scene, tree.moving.motion, unreported=UnreportedJoints.ZERO)
     joints.values[:] = values
     return joints
 
@@ -212,7 +215,7 @@ def test_poses_need_the_positions_between_them_and_the_pose_frame(data, count):
     text = model_text([data.draw(POSES) for _ in range(count)], joints)
     ids = tf_tree_from_scene(load_text(text)).frame_ids
     moving = moving_tree(text, pose_frame=data.draw(st.sampled_from(['', *ids]))).moving
-    is_known = np.array([data.draw(st.booleans()) for _ in moving.dofs], np.bool_)
+    is_known = np.array([data.draw(st.booleans()) for _ in moving.motion.dofs], np.bool_)
 
     def unknown_before(dof):
         found = set()
@@ -233,7 +236,7 @@ def test_transforms_along_the_tree_give_the_poses(data, count):
     kinds = data.draw(st.sampled_from([
         {Kind.LINK}, {Kind.JOINT}, {Kind.MODEL, Kind.LINK, Kind.JOINT}]))
     tree = moving_tree(text, kinds=frozenset(kinds), anchor_models=AnchorModels.ALL)
-    positions = np.array([data.draw(POSITIONS) for _ in tree.moving.dofs])
+    positions = np.array([data.draw(POSITIONS) for _ in tree.moving.motion.dofs])
     transforms = tree.transforms.copy()
     transforms[tree.moving.indices] = tree.moving.transforms(positions)
     poses = tree.poses.copy()
@@ -245,3 +248,64 @@ def test_transforms_along_the_tree_give_the_poses(data, count):
         sign = 1.0 if transform[3:] @ pose[3:] > 0.0 else -1.0
         np.testing.assert_allclose(
             [*transform[:3], *sign * transform[3:]], pose, rtol=0.0, atol=1e-12)
+
+
+# Models that move freely
+
+QUATERNIONS = st.tuples(*[st.floats(-1.0, 1.0)] * 4).filter(lambda quat: math.hypot(*quat) > 0.1)
+
+
+@st.composite
+def model_poses(draw):
+    quat = np.array(draw(QUATERNIONS))
+    return [*draw(st.tuples(*[st.floats(-50.0, 50.0)] * 3)), *quat / np.linalg.norm(quat)]
+
+
+def composed_matrices(tree, transforms):
+    """Return the pose of each frame in the root, composed as TF does it."""
+    edges = [matrix_from_pose(each) for each in tree.transforms]
+    for frame, transform in zip(tree.moving.indices.tolist(), transforms, strict=True):
+        edges[frame] = matrix_from_pose(transform)
+    matrices = {ROOT_IS_PARENT: np.eye(4)}
+
+    def matrix(frame):
+        if frame not in matrices:
+            matrices[frame] = matrix(tree.parents.item(frame)) @ edges[frame]
+        return matrices[frame]
+
+    return [matrix(frame) for frame in range(len(edges))]
+
+
+@given(random_scenes(is_world=True), st.data(), st.booleans())
+def test_frames_move_with_their_models(drawn, data, use_joint_states):
+    scene = load_text(drawn.text())
+    options = TfOptions(
+        follows_models=True, use_joint_states=use_joint_states, frame_prefix='p/',
+        optical_frames=False)
+    ids = tf_tree_from_scene(scene, options).frame_ids
+    tree = tf_tree_from_scene(scene, options._replace(
+        pose_frame=data.draw(st.sampled_from([options.root_frame, *ids]))))
+    moving, motion = tree.moving, tree.moving.motion
+    values = motion.initial_coordinates.copy()
+    in_file = drawn.matrices()
+    displacements = {-1: np.eye(4)}
+    for dof, model in enumerate(motion.free_models, len(motion.dofs)):
+        pose = data.draw(model_poses())
+        values[motion.coordinates(np.array([dof]))[0]] = pose
+        displacements[dof] = matrix_from_pose(pose) @ np.linalg.inv(in_file[model.scoped_name])
+
+    def displacement(element):
+        dof = motion.last_dofs[element]
+        while 0 <= dof < len(motion.dofs):
+            dof = motion.previous[dof]
+        return displacements[int(dof)]
+
+    expected = [
+        displacement(element) @ in_file[scene.names[element]] for element in tree.elements]
+    found = composed_matrices(tree, moving.transforms(values))
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-12)
+    if tree.pose_frame != tree.root_frame:
+        in_root = np.linalg.inv(expected[ids.index(tree.pose_frame)])
+        expected = [in_root @ each for each in expected]
+    for row, pose in zip(moving.posed_indices.tolist(), moving.poses(values), strict=True):
+        np.testing.assert_allclose(matrix_from_pose(pose), expected[row], rtol=0.0, atol=1e-12)

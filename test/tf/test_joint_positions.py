@@ -25,7 +25,7 @@ def model(name, content=''):
 def positions_of(text, model=''):
     scene = load_text(text)
     tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
-    return JointPositions(scene, tree.moving.dofs, model)
+    return JointPositions(scene, tree.moving.motion, model)
 
 
 def update(positions, stamp_ns=0, **values):
@@ -82,11 +82,11 @@ def test_names_inside_one_model_are_not_those_of_others():
 
 def test_a_joint_with_several_degrees_of_freedom_is_missing_once():
     positions = positions_of(model_file(LINKS + joint(ENDS, 'j', 'ball')))
-    assert positions.unreported() == ['j_yaw']
+    assert positions.unreported() == (['j_yaw'], [])
     positions.update(positions.selection(positions.names[:1]), np.zeros(1))
-    assert positions.unreported() == ['j_pitch']
+    assert positions.unreported() == (['j_pitch'], [])
     positions.update(positions.selection(positions.names), np.zeros(3))
-    assert positions.unreported() == []
+    assert positions.unreported() == ([], [])
 
 
 @pytest.mark.parametrize('text', [
@@ -222,7 +222,7 @@ def test_a_joint_with_one_position_has_it_without_a_message():
         + with_limits('bent', 0.5, 0.5) + with_limits('far', 1e10, 1e10))
     positions = positions_of(text)
     assert values_of(positions) == {'free': 0.0, 'zero': 0.0, 'bent': 0.5, 'far': 0.0}
-    assert positions.unreported() == ['free', 'far']
+    assert positions.unreported() == (['free', 'far'], [])
     after = positions_of(text.replace('0.5', '0.75'))
     after.take_over(positions)
     assert values_of(after)['bent'] == 0.75
@@ -263,6 +263,67 @@ def test_positions_of_one_time_stay_together():
     before = positions.values
     update(positions, j=0.5)
     assert before.tolist() == [0.0]
+
+
+# Free models
+
+def free_positions(*names, **options):
+    """Return the coordinates of a world with models, each of which has a joint."""
+    scene = load_text(world_file(''.join(map(model, names))))
+    tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True, follows_models=True))
+    return JointPositions(scene, tree.moving.motion, **options)
+
+
+def place(positions, dof, x, stamp_ns=5):
+    pose = np.array([[x, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]])
+    return positions.update(positions.selection_of_model(dof), pose, stamp_ns)
+
+
+def x_of(positions, dof):
+    return positions.values[positions.selection_of_model(dof).coordinates[0, 0]]
+
+
+def test_poses_and_positions_have_coordinates_of_their_own():
+    positions = free_positions('p', 'q')
+    assert positions.names == ('p/j', 'q/j', 'p', 'q')
+    assert positions.free_models == ('p', 'q')
+    update(positions, 3, **{'q/j': 0.5})
+    assert not place(positions, 3, 2.0)
+    assert positions.values.tolist() == [0, 0.5, *[0] * 6, 1, 2.0, *[0] * 5, 1]
+    assert positions.unreported() == (['p/j'], ['p'])
+    assert positions.stamps_ns.tolist() == [-1, 5, -1, 5]
+
+
+@pytest.mark.parametrize('x', [np.nan, np.inf, -1e10])
+def test_a_pose_that_cannot_be_used_is_ignored(x):
+    positions = free_positions('p')
+    place(positions, 1, 1.0)
+    assert place(positions, 1, x, 6) == ['p']
+    assert x_of(positions, 1) == 1.0
+
+
+def test_an_older_pose_is_ignored():
+    positions = free_positions('p')
+    place(positions, 1, 1.0)
+    assert not place(positions, 1, 2.0, 4)
+    assert x_of(positions, 1) == 1.0
+
+
+def test_reported_poses_are_taken_over_by_models_of_the_same_name():
+    before, after = free_positions('p', 'q'), free_positions('q', 'j', 'p')
+    place(before, 3, 2.0)
+    update(before, 3, **{'p/j': 0.5})
+    after.take_over(before)
+    assert (x_of(after, 3), x_of(after, 4), x_of(after, 5)) == (2.0, 0.0, 0.0)
+    assert after.values[:3].tolist() == [0.0, 0.0, 0.5]
+    assert after.unreported() == (['q/j', 'j/j'], ['j', 'p'])
+
+
+def test_the_model_of_a_file_that_was_spawned_has_a_scope():
+    scene = load_text(model_file(LINKS + joint(ENDS, 'j', 'revolute')))
+    motion = tf_tree_from_scene(scene, TfOptions(use_joint_states=True)).moving.motion
+    assert JointPositions(scene, motion).models == ()
+    assert JointPositions(scene, motion, is_spawned=True).models == ('m',)
 
 
 # Scenes at a configuration

@@ -53,7 +53,7 @@ ARM = model_file(
 def test_a_pose_behind_a_joint_needs_its_position(frame, relative_to, reported, missing):
     scene = load_text(ARM)
     tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
-    joints = JointPositions(scene, tree.moving.dofs)
+    joints = JointPositions(scene, tree.moving.motion)
     joints.update(joints.selection(reported), np.zeros(len(reported)))
     lookup = PoseLookup(scene, tree, joints)
     if missing:

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Parents in TF: what a frame is fixed to, or what a joint connects it to."""
 
+import numpy as np
 import pytest
 from sdf_texts import element, fixed_joint, model_file, posed, world_file
 
@@ -210,3 +211,35 @@ def test_a_joint_connects_a_child_to_its_parent_or_closes_a_loop(pairs):
             connected[parent] |= connected[child]
             for body in connected[parent]:
                 connected[body] = connected[parent]
+
+
+# Models that move freely
+
+A, B = model('a', LINKS), model('b', LINKS)
+
+
+@pytest.mark.parametrize(('content', 'only_model', 'expected'), [
+    (A + B, '', ['a', 'b']),
+    (A.replace('<link', '<static>true</static><link', 1) + B, '', ['b']),
+    (A + B + fixed_joint('j', 'world', 'a'), '', ['b']),
+    (A + B + fixed_joint('j', 'a', 'b'), '', ['a']),
+    (A + model('b', LINKS + model('n', LINKS)), '', ['a', 'b', 'b::n']),
+    (model('b', LINKS + model('n', LINKS) + fixed_joint('j', 'a', 'n::a')), '', ['b']),
+    (model('b', model('n', LINKS)), '', ['b']),
+    (A + model('ab', LINKS + model('n', LINKS)), 'ab::n', ['ab', 'ab::n']),
+    (A + model('ab', LINKS + model('n', LINKS)), 'a', ['a']),
+], ids=['all', 'static', 'joined to the world', 'joined to another', 'nested', 'joined nested',
+        'canonical link in a nested one', 'only a nested one', 'only one'])
+def test_models_move_freely_unless_they_are_static_or_joined(content, only_model, expected):
+    scene = sdf_pose_bridge.load_text(world_file(content))
+    found = tf_parents_from_scene(scene).with_free_models(
+        scene, np.zeros(len(scene.names), np.bool_), only_model)
+    assert [scene.names[each] for each in found.free_models.values()] == expected
+    assert all(found.parents[link] == 0 for link in found.free_models)
+
+
+def test_models_in_a_model_without_a_transform_stay_in_it():
+    scene = sdf_pose_bridge.load_text(world_file(A + model('b', LINKS + model('n', LINKS))))
+    found = tf_parents_from_scene(scene).with_free_models(
+        scene, np.array([name.startswith('b') for name in scene.names]), '')
+    assert [scene.names[each] for each in found.free_models.values()] == ['a']

@@ -247,7 +247,7 @@ def poses_of_joint_links(scene, positions, options):
     """Return the poses of the frames that TF has at joints for URDF."""
     tree = tf_tree_from_scene(scene, TfOptions(
         anchor_models=AnchorModels.ALL, use_joint_states=True, has_joint_links=True, **options))
-    state = JointPositions(scene, tree.moving.dofs, unreported=UnreportedJoints.ZERO)
+    state = JointPositions(scene, tree.moving.motion, unreported=UnreportedJoints.ZERO)
     selection = state.selection(list(positions))
     state.update(selection, np.array(list(positions.values()), float))
     lookup = PoseLookup(scene, tree, state)

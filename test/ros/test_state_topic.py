@@ -16,15 +16,12 @@ from std_msgs.msg import Header
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.ros.cdr import SerializedNames
-from sdf_pose_bridge.ros.joint_state_topic import (
-    BYTES_OF_OBJECTS,
-    JointStateTopic,
-    Meanings,
-    MOST_BYTES,
-)
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
+from sdf_pose_bridge.ros.state_messages import BYTES_OF_OBJECTS, Effects, MOST_BYTES
+from sdf_pose_bridge.ros.state_topic import JOINT_STATE, JointStateTopic, TopicKey
 from sdf_pose_bridge.tf.joint_positions import JointPositions, UnreportedJoints
+from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 ROBOT = f"""<model name="{{}}"><link name="base"/><link name="upper"/><link name="finger"/>
@@ -42,12 +39,13 @@ class Robots:
         scene = load_text(world_file(ROBOT.format('a') + ROBOT.format('b')))
         tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
         self._node = node
-        self.positions = JointPositions(scene, tree.moving.dofs, unreported=unreported)
-        self.meanings = Meanings(
-            PublishedFrames(Publishers(node), tree, self.positions, {}).moving)
+        self.positions = JointPositions(scene, tree.moving.motion, unreported=unreported)
+        self.effects = Effects(
+            PublishedFrames(Publishers(node), tree, self.positions, {}).moving,
+            PoseLookup(scene, tree, self.positions))
 
     def topic(self, name='a/j', model='a'):
-        return JointStateTopic(self._node, name, model)
+        return JointStateTopic(self._node, TopicKey(name, model, JOINT_STATE))
 
 
 @pytest.fixture(name='robots')
@@ -61,11 +59,12 @@ def make_read(robots):
     topic = robots.topic()
 
     def read(data):
-        message = topic.read(data, robots.meanings)
-        if message is None:
+        messages = topic.read(data, robots.effects)
+        if not messages:
             return None
-        names = [robots.positions.names[dof] for dof in message.meaning.selection.dofs]
-        return names, message.positions.tolist(), message.stamp_ns
+        (message,) = messages
+        names = [robots.positions.names[dof] for dof in message.effect.selection.dofs]
+        return names, message.values.tolist(), message.stamp_ns
     return read
 
 
@@ -107,12 +106,12 @@ def test_names_are_kept_for_all_topics_of_a_model_whatever_aligns_them(robots):
         robots.topic(*each) for each in (('a/j', 'a'), ('a/k', 'a'), ('b/j', 'b')))
     data = joint_state(turn=0.5, grip=0.25)
     begin = data.index(b'turn\0') + 5
-    meanings = [
-        topic.read(each, robots.meanings).meaning for topic, each in (
+    effects = [
+        topic.read(each, robots.effects)[0].effect for topic, each in (
             (first, data), (first, data[:begin] + b'abc' + data[begin + 3:]), (second, data),
             (first, joint_state(turn=0.5)), (first, data), (other, data))]
-    kept = meanings[0]
-    assert [each is kept for each in meanings] == [True, True, True, False, True, False]
+    kept = effects[0]
+    assert [each is kept for each in effects] == [True, True, True, False, True, False]
 
 
 @pytest.mark.parametrize('unreported', list(UnreportedJoints))
@@ -121,9 +120,9 @@ def test_names_move_their_transforms_and_those_of_joints_at_zero(make_node, unre
 
     def rows(*names):
         data = joint_state(**dict.fromkeys(names, 0.0))
-        message = robots.topic('j', '').read(data, robots.meanings)
-        robots.positions.update(message.meaning.selection, message.positions, 5)
-        return robots.meanings.rows(message.meaning).tolist()
+        (message,) = robots.topic('j', '').read(data, robots.effects)
+        robots.positions.update(message.effect.selection, message.values, 5)
+        return robots.effects.rows(message.effect).tolist()
 
     at_zero = unreported is UnreportedJoints.ZERO
     assert rows('a/turn', 'x') == ([0, 1, 2, 3] if at_zero else [0])
@@ -135,11 +134,11 @@ def test_names_move_their_transforms_and_those_of_joints_at_zero(make_node, unre
 
 @pytest.mark.parametrize('size', [MOST_BYTES // 10, 1])
 def test_all_names_together_take_a_limited_number_of_bytes(robots, size):
-    topic, meanings = robots.topic(), set()
+    topic, effects = robots.topic(), set()
     count = 2 * MOST_BYTES // (size + BYTES_OF_OBJECTS)
     for _ in range(2):
         for number in range(count):
             names = SerializedNames((str(number) * size,), b'x' * size)
-            meanings.add(robots.meanings.find(names, topic)[0])
-            assert robots.meanings.last[topic.name].names is names
-    assert len(meanings) > 1.5 * count
+            effects.add(robots.effects.find(names, topic, 'a')[0])
+            assert robots.effects.last[topic.name].names is names
+    assert len(effects) > 1.5 * count

@@ -1,0 +1,273 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Messages about joints and models: their sources, and what each of them changes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+import math
+import time
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from rclpy.node import Node
+from rclpy.subscription import Subscription
+
+from sdf_pose_bridge.geometry.poses import Pose, pose_product
+from sdf_pose_bridge.geometry.rotations import canonical_quaternion
+from sdf_pose_bridge.names import hint_from_names
+from sdf_pose_bridge.ros.cdr import SerializedNames, StampedPose
+from sdf_pose_bridge.ros.log_lines import names_in_line
+from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
+from sdf_pose_bridge.tf.joint_positions import LARGEST_POSITION, Selection
+from sdf_pose_bridge.tf.lookup import PoseLookup
+
+MOST_BYTES = 4_000_000
+"""Largest size of all names and rows that are kept. A message has a quarter of it at most."""
+
+BYTES_OF_OBJECTS = 2_000
+"""Size that is counted for the objects of an effect, in addition to its names and rows."""
+
+MOST_OFF_UNIT = 0.01
+"""Largest difference of the norm of a quaternion from 1; it is made 1."""
+
+_MOST_REPORTED = 1000
+"""Largest number of names that a source keeps because it has reported them."""
+
+_WARNING_PERIOD_S = 10.0
+
+
+@dataclass(eq=False)
+class Effect:
+    """The degrees of freedom and the transforms that messages with the same names change."""
+
+    names: SerializedNames
+    """The names of joints; empty for the pose of a model."""
+    selection: Selection
+    """The degrees of freedom."""
+    rows: NDArray[np.intp]
+    """The moving transforms to publish."""
+    reported_count: int = -1
+    """Number of reported degrees of freedom when these were found; -1 if they were not."""
+
+
+class Message(NamedTuple):
+    """The fields of a message that are read, and its effect."""
+
+    source: StateSource
+    effect: Effect
+    values: NDArray[np.float64]
+    """A position for each name; or the pose of a model, shape (1, 7)."""
+    stamp_ns: int
+    """Its stamp in nanoseconds; 0 if it has none."""
+    frame_id: str = ''
+    """The frame in which the pose of a model is given; empty for the root frame."""
+
+
+class StateSource:
+    """
+    A source of messages about joints or models.
+
+    :param name: its full name, for messages.
+    """
+
+    subscription: Subscription | None = None
+    """The subscription for whose messages to wait."""
+
+    def __init__(self, node: Node, name: str) -> None:
+        self.name = name
+        self.last_ns = 0
+        """Time of the node when the last message was used; the caller sets it."""
+        self._logger = node.get_logger()
+        self._warnings_due: dict[str, float] = {}
+        self._reported_names: set[str] = set()
+
+    @property
+    def has_answers(self) -> bool:
+        """Whether messages wait that no subscription has."""
+        return False
+
+    def take(self, effects: Effects, newest: dict[Effect, Message]) -> bool:
+        """
+        Take a message.
+
+        :param newest: gets it, unless the one with the same effect there is newer.
+        :return: whether there was one.
+        """
+        raise NotImplementedError
+
+    def warn_about_invalid(self, names: Sequence[str]) -> None:
+        """Log the joints or models whose values cannot be used, if there are any."""
+        if names:
+            self.warn('values', lambda: (
+                f'{self.name} has values for {names_in_line(names)} that are not finite or '
+                f'beyond {LARGEST_POSITION:g}; the last ones are kept'))
+
+    def warn(self, about: str, text: Callable[[], str]) -> bool:
+        """Log a warning, unless the last one about the same was not long ago."""
+        now = time.monotonic()
+        is_due = now >= self._warnings_due.get(about, 0.0)
+        if is_due:
+            self._warnings_due[about] = now + _WARNING_PERIOD_S
+            self._logger.warning(text())
+        return is_due
+
+    def warn_once(self, about: str, names: Sequence[str], text: Callable[[], str]) -> None:
+        """Log a warning about names, unless all of them have been reported before."""
+        if not self._reported_names.issuperset(names) and self.warn(about, text):
+            self._reported_names.update(names[:_MOST_REPORTED - len(self._reported_names)])
+
+    def messages_from_poses(
+        self, poses: Iterable[StampedPose], effects: Effects, dof: int | None = None,
+    ) -> list[Message]:
+        """
+        Find the effects of poses; log those that cannot be used.
+
+        :param dof: the free model whose poses they are; None if their child frame ids name it.
+        """
+        messages, unknown, others, invalid = [], [], [], []
+        for pose in poses:
+            model = effects.models.get(pose.child_frame_id) if dof is None else dof
+            frame_id = '' if effects.is_root(pose.frame_id) else pose.frame_id
+            if model is None:
+                unknown.append(pose.child_frame_id)
+            elif frame_id and not effects.knows_frame(frame_id):
+                others.append(frame_id)
+            elif not abs(math.hypot(*pose.pose[3:]) - 1.0) <= MOST_OFF_UNIT:
+                invalid.append(pose.pose)
+            else:
+                unit = (*pose.pose[:3], *canonical_quaternion(pose.pose[3:]))
+                messages.append(Message(
+                    self, effects.of_model(model), np.array([unit]), pose.stamp_ns, frame_id))
+        if unknown:
+            self.warn_once('models', unknown, lambda: (
+                f'{self.name} has poses of {names_in_line(unknown)}, which are ignored: no model '
+                'has this name, or it is static, or a joint connects it to another body'
+                f'{hint_from_names(unknown[0], effects.models)}'))
+        if others:
+            self.warn_once('frames', others, lambda: (
+                f'{self.name} has poses in {names_in_line(others)}, which are ignored: there is '
+                'no such frame; if it is the same as the root frame, name it in '
+                'model_pose_frames'))
+        if invalid:
+            self.warn('pose', lambda: (
+                f'a pose from {self.name} is ignored: {invalid[0]} has no quaternion of length 1'))
+        return messages
+
+
+def add_newest(messages: Iterable[Message], newest: dict[Effect, Message]) -> None:
+    """Add messages, unless one with the same effect is newer."""
+    for message in messages:
+        known = newest.get(message.effect, message)
+        if not 0 < message.stamp_ns < known.stamp_ns:
+            newest[message.effect] = message
+
+
+class Effects:
+    """
+    The effects of messages from all sources, kept for messages with the same names.
+
+    :param frames: the frames that messages move.
+    :param lookup: looks up frames in which poses of models are given.
+    :param root_patterns: glob patterns of frame ids that mean the root frame.
+    """
+
+    def __init__(
+        self, frames: PublishedMovingFrames, lookup: PoseLookup,
+        root_patterns: Sequence[str] = (),
+    ) -> None:
+        self.positions = frames.positions
+        self._frames = frames
+        self._lookup = lookup
+        self._root_patterns = root_patterns
+        # By the model and the names.
+        self._effects: dict[tuple[str, tuple[str, ...]], Effect] = {}
+        self._effects_of_models: dict[int, Effect] = {}
+        self._are_roots: dict[str, bool] = {}
+        tree, motion = frames.tree, frames.frames.motion
+        free_models = dict(enumerate(motion.free_models, len(motion.dofs)))
+        ids = dict(zip(tree.elements.tolist(), tree.frame_ids, strict=True))
+        self.models = {
+            name: dof for dof, each in free_models.items()
+            for name in (each.name, each.scoped_name, ids.get(each.element, each.name))}
+        """The degrees of freedom of free models, by their names and by their frame ids."""
+        self.only_model = next(iter(free_models)) if len(free_models) == 1 else None
+        """The degree of freedom of the only free model; None if there is not exactly one."""
+        self.last: dict[str, Effect] = {}
+        """The effect of the last message on each topic of joint states, as far as it is kept."""
+        self._size = 0
+
+    def find(
+        self, names: SerializedNames, source: StateSource, model: str,
+    ) -> tuple[Effect, list[str]]:
+        """
+        Find the effect of the names of joints.
+
+        :param model: the top-level model whose joints they name; empty for all joints.
+        :return: the effect; and the unknown and ambiguous names, if it was not kept.
+        """
+        unknown = []
+        found = self._effects.get((model, names.names))
+        if found is None:
+            found = Effect(
+                names, self.positions.selection(names.names, model), np.array([], np.intp))
+            unknown = self.positions.unknown(names.names, model)
+            self._make_room(BYTES_OF_OBJECTS + len(names.data))
+            self._effects[model, names.names] = found
+        self.last[source.name] = found
+        return found, unknown
+
+    def of_model(self, dof: int) -> Effect:
+        """Return the effect of a pose of a free model."""
+        found = self._effects_of_models.get(dof)
+        if found is None:
+            found = self._effects_of_models[dof] = Effect(
+                SerializedNames((), b''), self.positions.selection_of_model(dof),
+                np.array([], np.intp))
+        return found
+
+    def rows(self, effect: Effect) -> NDArray[np.intp]:
+        """Return the transforms that a message moves, and those of what is where the file is."""
+        if effect.reported_count != self.positions.reported_count and effect.selection.changed:
+            effect.reported_count = self.positions.reported_count
+            effect.rows = self._frames.rows_from_dofs(effect.selection.changed)
+            self._make_room(effect.rows.nbytes)
+        return effect.rows
+
+    def is_root(self, frame_id: str) -> bool:
+        """Return whether a frame id in the header of a pose means the root frame."""
+        found = self._are_roots.get(frame_id)
+        if found is None:
+            self._make_room(BYTES_OF_OBJECTS + len(frame_id))
+            tree = self._frames.tree
+            found = self._are_roots[frame_id] = frame_id in ('', tree.root_frame, tree.world) or (
+                any(fnmatchcase(frame_id, pattern) for pattern in self._root_patterns))
+        return found
+
+    def knows_frame(self, frame_id: str) -> bool:
+        """Return whether a pose of a model can be given in a frame other than the root frame."""
+        return self._lookup.knows(frame_id)
+
+    def values(self, message: Message) -> NDArray[np.float64]:
+        """
+        Return the positions, or the pose in the root frame, that a message has.
+
+        :raises SdfError: if its pose is given in a frame whose pose is not known, or that moves
+            with the model.
+        """
+        if not message.frame_id:
+            return message.values
+        frame = self._lookup.pose_beside(message.frame_id, message.effect.selection.changed[0])
+        return np.array([pose_product(frame, Pose(*message.values[0].tolist()))])
+
+    def _make_room(self, size: int) -> None:
+        """Forget everything if it would be too much."""
+        self._size += size
+        if self._size > MOST_BYTES:
+            self._effects.clear()
+            self._are_roots.clear()
+            self.last.clear()
+            self._size = size

@@ -1,0 +1,155 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Subscribe to the topics of joint states and of poses of models, and ask the simulator."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+import functools
+
+from rclpy.clock import Clock, ClockType
+from rclpy.node import Node
+
+from sdf_pose_bridge.ros.background import result_from_executor
+from sdf_pose_bridge.ros.log_lines import names_in_line
+from sdf_pose_bridge.ros.parameters import Settings
+from sdf_pose_bridge.ros.simulator import Simulator
+from sdf_pose_bridge.ros.state_messages import StateSource
+from sdf_pose_bridge.ros.state_topic import (
+    JOINT_STATE,
+    POSE_TYPES,
+    state_topic,
+    StateTopic,
+    TopicKey,
+)
+from sdf_pose_bridge.ros.topic_names import StateTopics
+
+SEARCH_PERIOD_S = 1.0
+"""Period of the search for publishers of poses, whose type is that of the topic."""
+
+
+class StateSources:
+    """
+    The sources of messages that are wanted.
+
+    The loader calls :meth:`follow` and :meth:`close`; the executor of the node calls the rest.
+
+    :param changed: called by the executor when it has found a source.
+    :param wake: called when the simulator has answered.
+    """
+
+    def __init__(
+        self, node: Node, changed: Callable[[], None], wake: Callable[[], None],
+    ) -> None:
+        self._node = node
+        self._logger = node.get_logger()
+        self._changed, self._wake = changed, wake
+        self._topics: dict[TopicKey, StateTopic] = {}
+        self._wanted = StateTopics({})
+        self._simulator: Simulator | None = None
+        self._reported: set[tuple[str, ...]] = set()
+        self._search = node.create_timer(
+            SEARCH_PERIOD_S, self._find_publishers, autostart=False,
+            clock=Clock(clock_type=ClockType.STEADY_TIME))
+
+    @property
+    def sources(self) -> tuple[StateSource, ...]:
+        """All sources; those with a subscription come first."""
+        return (*self._topics.values(), *([self._simulator] if self._simulator else []))
+
+    @property
+    def joint_state_topics(self) -> list[StateTopic]:
+        """The topics of joint states."""
+        return [each for key, each in self._topics.items() if key.type_name == JOINT_STATE]
+
+    @property
+    def wanted_count(self) -> int:
+        """The number of sources that are wanted."""
+        wanted = self._wanted
+        return len(wanted.joint_states) + len(wanted.model_poses) + (self._simulator is not None)
+
+    def follow(
+        self, topics: StateTopics, settings: Settings, models: Sequence[str],
+    ) -> list[StateTopic]:
+        """
+        Change what is wanted.
+
+        :param models: the scoped names of the free models.
+        :return: the topics that are no longer wanted, to be closed when nothing awaits them.
+        """
+        if topics.warnings != self._wanted.warnings:
+            for line in topics.warnings:
+                self._logger.warning(line)
+        unwanted = result_from_executor(self._node, lambda: self._want(topics))
+        for key in [TopicKey(*each, JOINT_STATE) for each in topics.joint_states.items()]:
+            if key not in self._topics:
+                # The executor goes on between two of them.
+                result_from_executor(self._node, functools.partial(self._open, key))
+        result_from_executor(self._node, lambda: self._follow_others(settings, models))
+        return unwanted
+
+    def close(self, topics: Sequence[StateTopic]) -> None:
+        """Destroy the subscriptions of topics that :meth:`follow` has returned."""
+        for topic in topics:
+            result_from_executor(self._node, functools.partial(
+                self._node.destroy_subscription, topic.subscription))
+
+    def end(self) -> None:
+        """Destroy all subscriptions."""
+        self._node.destroy_timer(self._search)
+        for topic in self._topics.values():
+            self._node.destroy_subscription(topic.subscription)
+        if self._simulator is not None:
+            self._simulator.end()
+
+    def _want(self, topics: StateTopics) -> list[StateTopic]:
+        self._wanted = topics
+        return [
+            self._topics.pop(key) for key in [*self._topics]
+            if (topics.joint_states if key.type_name == JOINT_STATE else topics.model_poses).get(
+                key.name) != key.model]
+
+    def _follow_others(self, settings: Settings, models: Sequence[str]) -> None:
+        """Follow topics of poses, and the simulator."""
+        self._search.cancel()
+        if self._wanted.model_poses:
+            self._search.reset()
+            self._find_publishers()
+        current, wanted = self._simulator, settings.simulator if models else ''
+        if current is not None and current.node_name != wanted:
+            current.end()
+            self._simulator = current = None
+        if wanted and current is None:
+            self._simulator = current = Simulator(self._node, wanted, self._wake)
+        if current is not None:
+            current.follow(models, settings.simulator_rate)
+
+    def _open(self, key: TopicKey) -> None:
+        try:
+            self._topics[key] = state_topic(self._node, key)
+        except (RuntimeError, ValueError) as error:
+            # Security may forbid it. The rest of the message names lines of the source of ROS.
+            reason = str(error).partition(', at /')[0]
+            self._logger.warning(f'no subscription to {key.name}: {reason}')
+
+    def _find_publishers(self) -> None:
+        """Subscribe to topics of poses with the types with which they are published."""
+        types = dict(self._node.get_topic_names_and_types())
+        current = {
+            key[:2]: key.type_name for key in self._topics if key.type_name != JOINT_STATE}
+        count = len(self._topics)
+        for place in self._wanted.model_poses.items():
+            name = self._node.resolve_topic_name(place[0])
+            if types.get(name, []) in ([], [current.get(place)]):
+                continue
+            found = sorted({
+                each.topic_type for each in self._node.get_publishers_info_by_topic(name)})
+            if len(found) == 1 and found[0] in POSE_TYPES and place not in current:
+                self._open(TopicKey(*place, found[0]))
+            elif found not in ([], [current.get(place)]) and (name, *found) not in self._reported:
+                self._reported.add((name, *found))
+                self._logger.warning(
+                    f'{name} has messages of {names_in_line(found)}; topics in model_pose_topics '
+                    f'must have one type, which is one of {names_in_line(list(POSE_TYPES))}')
+        if len(self._topics) != count:
+            self._changed()

@@ -1,0 +1,153 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""A bridge that follows poses of models, beside a process that publishes them and listens."""
+
+import math
+from pathlib import Path
+import sys
+
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2')
+
+from bridge_process import LoggedProcess
+from changes import BRIDGE, listen_to_tf, pose_of, reload, replace, set_parameters
+from geometry_msgs.msg import (
+    PointStamped,
+    PoseStamped,
+    PoseWithCovarianceStamped,
+    TransformStamped,
+)
+from nav_msgs.msg import Odometry
+from tf2_msgs.msg import TFMessage
+from tracker import CART, stamped, Tracker, WORLD
+
+from sdf_pose_bridge_interfaces.srv import LookupPose
+
+EXAMPLES = Path(__file__).resolve().parents[2] / 'examples'
+TOPIC = '/tracker/{model}/pose'
+
+
+@pytest.fixture(name='file')
+def write_file(tmp_path):
+    path = tmp_path / 'shop.sdf'
+    path.write_text(WORLD.format(height=0.5), encoding='utf-8')
+    return path
+
+
+@pytest.fixture(name='tracker')
+def make_tracker(tf):
+    return Tracker(tf)
+
+
+@pytest.fixture(name='follow')
+def make_follow(bridge, tf):
+    """Lets the bridge follow poses of models."""
+    def follow(*topics, **parameters):
+        set_parameters(tf.listener, model_pose_topics=list(topics or [TOPIC]), **parameters)
+        return bridge
+    return follow
+
+
+@pytest.mark.parametrize('message_type', [
+    PoseStamped, PoseWithCovarianceStamped, TransformStamped, Odometry])
+def test_a_pose_of_each_type_moves_its_model(follow, tf, tracker, message_type):
+    follow(frame_prefix='p/')
+    found = tracker.move(3.0, 'p/cart/deck', message_type)
+    assert found.header.frame_id == 'world'
+    assert (found.transform.translation.z, found.transform.rotation.z) == (
+        0.5, pytest.approx(math.sqrt(0.5)))
+    assert pose_of(tf, 'p/cart').x == 3.0
+
+
+def test_transforms_name_the_models_that_they_move(follow, tf, tracker):
+    bridge = follow('/poses', model_pose_frames=['*/odom'])
+
+    def are_there():
+        tracker.sec += 1
+        tracker.publish(TFMessage(transforms=[
+            stamped(TransformStamped, tracker.sec, x, frame_id, child)
+            for x, frame_id, child in (
+                (4, 'shop', 'cart'), (5, 'cart/odom', 'cart::crate'), (6, '', 'arm'),
+                (7, '', 'wall'), (8, 'elsewhere', 'arm'))]), '/poses')
+        return tf.last.keys() >= {'cart/deck', 'cart/crate/box', 'arm/base'}
+
+    tf.listener.wait(are_there, lambda: tf.last)
+    assert [tf.last[each].transform.translation.x for each in (
+        'cart/deck', 'cart/crate/box', 'arm/base')] == [4.0, 5.0, 6.0]
+    bridge.wait_for_line('/poses has poses of "wall", which are ignored')
+    bridge.wait_for_line('/poses has poses in "elsewhere", which are ignored')
+    assert sum('which are ignored' in line for line in bridge.lines) == 2
+
+
+def test_a_topic_of_another_type_is_reported_once(follow, tracker):
+    bridge = follow()
+    tracker.publish(PointStamped())
+    bridge.wait_for_line(f'{CART} has messages of "geometry_msgs/msg/PointStamped"; topics in')
+    tracker.stop()
+    tracker.move(3.0)
+    assert sum('PointStamped' in line for line in bridge.lines) == 1
+
+
+def test_a_tracker_may_come_late_stop_and_come_back(follow, tf, tracker):
+    bridge = follow()
+    bridge.wait_for_line('3 models have no pose yet, for example "cart"')
+    answer = tf.listener.call(
+        LookupPose, f'{BRIDGE}/lookup_pose', LookupPose.Request(frame='cart/deck'))
+    assert 'depends on the pose of model "cart", which has not been reported' in answer.message
+    tracker.move(3.0)
+    tracker.stop()
+    tf.listener.wait(lambda: not tf.listener.node.count_publishers(CART), lambda: 'its end')
+    assert pose_of(tf, 'cart').x == 3.0
+    tracker.move(4.0)
+
+
+def test_poses_in_a_frame_that_moves_follow_it(follow, tf, tracker, joints):
+    follow(use_joint_states=True)
+    tracker.move(5.0, 'arm/base', topic='/tracker/arm/pose')
+    tf.listener.wait(
+        lambda: joints.send({'lift': 0.25}) and 'arm/hand' in tf.last, lambda: 'the hand')
+    tf.wait_for('arm/hand', joints.send({'lift': 0.5}))
+    # The base of the arm is turned by a quarter.
+    found = tracker.move(1.0, seen_x=5.0, frame_id='arm/hand').transform
+    assert (found.translation.y, found.translation.z) == pytest.approx((1.0, 2.0))
+
+
+def test_models_keep_their_poses_when_the_file_is_read_again(follow, file, tf, tracker):
+    follow(watch=False)
+    tracker.move(3.0)
+    replace(file, WORLD.format(height=0.75))
+    assert reload(tf.listener).success
+    tf.listener.wait(
+        lambda: tf.last['cart/deck'].transform.translation.z == 0.75, lambda: tf.last)
+    assert (pose_of(tf, 'cart/deck').x, pose_of(tf, 'cart/deck').z) == (3.0, 0.75)
+    tracker.move(4.0)
+
+
+@pytest.mark.usefixtures('bridge')
+def test_models_can_be_where_the_file_puts_them_at_first(follow, tf):
+    follow(unreported_joints='zero')
+    tf.listener.wait(lambda: 'cart/deck' in tf.last, lambda: tf.last)
+    assert tf.last['cart/deck'].transform.translation.x == 1.0
+    listen_to_tf(tf.listener)
+    tf.listener.wait(lambda: tf.listener.tf_messages, lambda: '/tf_static')
+    fixed = {each.child_frame_id for each in tf.listener.tf_messages[-1].transforms}
+    assert 'arm/hand' in fixed, 'as joints do not move'
+    assert fixed.isdisjoint({'cart/deck', 'arm/base', 'cart/crate/box'})
+
+
+def test_the_example_moves_the_part_of_the_work_cell(start_bridge, tf):
+    start_bridge(
+        '--ros-args', '-p', f'sdf_file:={EXAMPLES / "work_cell.sdf"}', '-p',
+        f"model_pose_topics:=['{TOPIC}']").wait_until_started()
+    tracker = LoggedProcess([
+        sys.executable, EXAMPLES / 'track_part.py', '--ros-args', '-p', 'frame:=robot/tool0'])
+    try:
+        tf.listener.wait(lambda: 'gear_housing/body' in tf.last, lambda: tf.last)
+        answer = tf.listener.call(LookupPose, f'{BRIDGE}/lookup_pose', LookupPose.Request(
+            frame='gear_housing', relative_to='robot/tool0'))
+    finally:
+        tracker.end()
+    position = answer.pose.pose.position
+    assert math.hypot(position.x, position.y) == pytest.approx(0.1)
+    assert position.z == pytest.approx(0.2)

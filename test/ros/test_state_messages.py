@@ -1,0 +1,112 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""What poses of models change, and the ones that are ignored."""
+
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2')
+
+from sdf_texts import joint, world_file
+
+from sdf_pose_bridge import load_text
+from sdf_pose_bridge.errors import JointPositionError
+from sdf_pose_bridge.ros.cdr import StampedPose
+from sdf_pose_bridge.ros.published_frames import PublishedFrames
+from sdf_pose_bridge.ros.publishers import Publishers
+from sdf_pose_bridge.ros.state_messages import add_newest, Effects, StateSource
+from sdf_pose_bridge.tf.joint_positions import JointPositions
+from sdf_pose_bridge.tf.lookup import PoseLookup
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
+
+TEXT = world_file(
+    '<model name="a"><link name="l"/><link name="k"/>' + joint(
+        '<parent>l</parent><child>k</child><axis><xyz>1 0 0</xyz></axis>', 'j', 'prismatic')
+    + '<model name="b"><link name="l"/></model></model>'
+    '<model name="fixed"><static>true</static><pose>0 2 0 0 0 0</pose><link name="l"/></model>')
+TURNED = (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)
+
+
+class Models:
+    """A source of poses of the models ``a`` and ``a::b``."""
+
+    def __init__(self, node):
+        scene = load_text(TEXT)
+        tree = tf_tree_from_scene(scene, TfOptions(
+            use_joint_states=True, follows_models=True, frame_prefix='p/'))
+        self.positions = JointPositions(scene, tree.moving.motion)
+        self.effects = Effects(
+            PublishedFrames(Publishers(node), tree, self.positions, {}).moving,
+            PoseLookup(scene, tree, self.positions), ['*/odom'])
+        self.source = StateSource(node, '/poses')
+
+    def read(self, child='a', frame_id='', pose=TURNED, stamp_ns=5):
+        """Return the messages of a pose."""
+        return self.source.messages_from_poses(
+            [StampedPose(stamp_ns, frame_id, child, pose)], self.effects)
+
+
+@pytest.fixture(name='models')
+def make_models(make_node):
+    return Models(make_node('bridge'))
+
+
+@pytest.mark.parametrize(('child', 'name'), [
+    ('a', 'a'), ('p/a', 'a'), ('a::b', 'a/b'), ('a/b', 'a/b'), ('p/a/b', 'a/b')])
+def test_models_have_their_names_and_their_frame_ids(models, child, name):
+    (message,) = models.read(child)
+    assert [models.positions.names[dof] for dof in message.effect.selection.dofs] == [name]
+    assert message.values.tolist() == [list(TURNED)]
+    assert models.read(child)[0].effect is message.effect
+
+
+@pytest.mark.parametrize('frame_id', ['', 'world', 'w', 'robot/odom'])
+def test_frames_that_mean_the_root(models, frame_id):
+    assert models.read(frame_id=frame_id)[0].frame_id == ''
+
+
+@pytest.mark.parametrize(('fields', 'line'), [
+    ({'child': 'fixed'}, '/poses has poses of "fixed", which are ignored: no model has'),
+    ({'child': 'aa'}, 'another body; did you mean "a"?'),
+    ({'frame_id': 'odom'}, '/poses has poses in "odom", which are ignored: there is no such'),
+    *(({'pose': (*TURNED[:3], *quat)}, 'has no quaternion of length 1') for quat in (
+        (0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.02), (0.0, 0.0, float('nan'), 1.0),
+        (float('inf'), 0.0, 0.0, 0.0))),
+])
+def test_a_pose_that_cannot_be_used_is_reported_once(models, capfd, fields, line):
+    assert not models.read(**fields)
+    assert not models.read(**fields)
+    assert capfd.readouterr().err.count(line) == 1
+
+
+def test_a_quaternion_that_is_nearly_unit_is_made_unit(models):
+    (message,) = models.read(pose=(*TURNED[:3], 0.0, 0.0, 0.0, -1.009))
+    assert message.values[0, 3:].tolist() == [0.0, 0.0, 0.0, 1.0]
+
+
+def test_poses_in_a_frame_of_the_tree_are_composed_with_it(models):
+    (message,) = models.read(frame_id='p/fixed/l')
+    assert models.effects.values(message).tolist() == [[1.0, 4.0, 3.0, 0.0, 0.0, 0.0, 1.0]]
+
+
+@pytest.mark.parametrize(('child', 'frame_id', 'words'), [
+    ('a::b', 'p/a/l', 'depends on the pose of model "a"'),
+    ('a', 'p/a/k', 'moves with the model'),
+])
+def test_a_frame_without_a_pose_of_its_own_is_refused(models, child, frame_id, words):
+    (message,) = models.read(child, frame_id)
+    with pytest.raises(JointPositionError, match=words):
+        models.effects.values(message)
+
+
+def test_the_newest_message_of_a_model_counts(models):
+    newest = {}
+    for stamp_ns in (4, 6, 5):
+        add_newest(models.read(stamp_ns=stamp_ns), newest)
+    assert [each.stamp_ns for each in newest.values()] == [6]
+
+
+def test_a_pose_moves_the_link_at_which_the_model_hangs(models):
+    (message,) = models.read()
+    models.positions.update(message.effect.selection, message.values, 5)
+    frames = models.effects.rows(message.effect)
+    assert len(frames) == 1

@@ -1,0 +1,116 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The topics that a node subscribes to, and when."""
+
+import time
+
+from geometry_msgs.msg import PointStamped, PoseStamped
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2')
+
+from nav_msgs.msg import Odometry
+import rclpy
+from rclpy.context import Context
+
+from sdf_pose_bridge.ros.given_parameters import settings_from_values
+from sdf_pose_bridge.ros.state_sources import StateSources
+from sdf_pose_bridge.ros.topic_names import StateTopics
+
+SETTINGS = settings_from_values({'sdf_file': 'a.sdf'})
+TOPICS = StateTopics({'joint_states': ''}, {'a/pose': 'a', 'b/pose': 'b'})
+
+
+class Sources:
+    """The sources of a node, and a node that publishes."""
+
+    def __init__(self, node, other, beside):
+        self._node, self._other, self._beside = node, other, beside
+        self.changes = 0
+        self.sources = StateSources(node, self._count, lambda: None)
+
+    def follow(self, *arguments):
+        """Call this method as the loader does."""
+        return self._beside(self._node.executor, self.sources.follow, *arguments)
+
+    def _count(self):
+        self.changes += 1
+
+    def publish(self, message_type, topic='a/pose'):
+        return self._other.create_publisher(message_type, topic, 10)
+
+    def types(self):
+        return {
+            each.name: each.subscription.msg_type.__name__ for each in self.sources.sources}
+
+    def wait_for(self, **types):
+        """Search until these are the types of the topics of poses."""
+        expected = {'/joint_states': 'JointState', **{f'/{k}/pose': v for k, v in types.items()}}
+        deadline = time.monotonic() + 20.0
+        while self.types() != expected:
+            assert time.monotonic() < deadline, self.types()
+            self.sources._find_publishers()
+            time.sleep(0.01)
+
+
+@pytest.fixture(name='sources')
+def make_sources(node, make_node, beside):
+    found = Sources(node, make_node('other'), beside)
+    found.follow(TOPICS, SETTINGS, ['a', 'b'])
+    yield found
+    found.sources.end()
+
+
+@pytest.fixture
+def other_context(ros_domain):
+    context = Context()
+    rclpy.init(args=[], context=context, domain_id=ros_domain)
+    yield context
+    context.shutdown()
+
+
+def test_topics_of_poses_have_the_types_of_their_publishers(sources):
+    sources.wait_for()
+    sources.publish(PoseStamped)
+    sources.wait_for(a='PoseStamped')
+    sources.publish(Odometry, 'b/pose')
+    sources.wait_for(a='PoseStamped', b='Odometry')
+    assert sources.sources.wanted_count == 3
+
+
+@pytest.mark.parametrize(('types', 'words'), [
+    ([PointStamped], '/a/pose has messages of "geometry_msgs/msg/PointStamped"; topics'),
+    ([Odometry, PoseStamped], 'of "geometry_msgs/msg/PoseStamped", "nav_msgs/msg/Odometry"; top'),
+])
+def test_other_types_and_several_are_reported_once(
+        sources, node, other_context, capfd, types, words):
+    # A process has one type for a topic.
+    sources.publish(types[0])
+    third = rclpy.create_node('third', context=other_context)
+    for each in types[1:]:
+        third.create_publisher(each, '/a/pose', 10)
+    deadline = time.monotonic() + 20.0
+    while node.count_publishers('/a/pose') < len(types):
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+    sources.publish(PoseStamped, 'b/pose')
+    sources.wait_for(b='PoseStamped')
+    sources.sources._find_publishers()
+    assert capfd.readouterr().err.count(words) == 1
+
+
+def test_topics_that_are_no_longer_wanted_are_returned(sources, node):
+    sources.publish(PoseStamped)
+    sources.wait_for(a='PoseStamped')
+    unwanted = sources.follow(StateTopics({'joint_states': ''}), SETTINGS, ['a', 'b'])
+    assert [each.name for each in unwanted] == ['/a/pose']
+    for each in unwanted:
+        node.destroy_subscription(each.subscription)
+    sources.wait_for()
+
+
+def test_warnings_are_repeated_only_if_they_change(sources, capfd):
+    for warnings in (('one',), ('one',), ('two',)):
+        sources.follow(TOPICS._replace(warnings=warnings), SETTINGS, [])
+    log = capfd.readouterr().err
+    assert (log.count('one'), log.count('two')) == (1, 1)
