@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 import contextlib
 import itertools
 from pathlib import Path
@@ -158,39 +158,59 @@ def transforms_of_100_joints() -> Iterator[tuple[Function, Function | None]]:
 def shares_of_processors(
     joints: int, counterpart: str = COUNTERPART, publish_frequency: float = 0.0,
 ) -> Iterator[tuple[Function, Function]]:
-    """Measure what the bridge and the counterpart take while they follow the same messages."""
+    """Measure what the bridge and the counterpart take while they follow joint states."""
+    from sensor_msgs.msg import JointState
+
+    def publishing(node: Node) -> Callable[[], None]:
+        publisher = node.create_publisher(JointState, 'joint_states', 10)
+        wait_until(
+            lambda: publisher.get_subscription_count() >= 2,
+            'the nodes did not subscribe to joint_states')
+        messages = joint_states(joints)
+        return lambda: publisher.publish(next(messages))
+
+    with shares_while_publishing(
+            chain_text(joints), (
+                'use_joint_states:=true', f'publish_frequency:={publish_frequency}'),
+            (counterpart, str(joints)), publishing, RATE_HZ) as pair:
+        yield pair
+
+
+@contextlib.contextmanager
+def shares_while_publishing(
+    text: str, parameters: Sequence[str], counterpart: Sequence[str],
+    publishing: Callable[[Node], Callable[[], None]], rate_hz: float,
+) -> Iterator[tuple[Function, Function]]:
+    """
+    Measure what the bridge and a counterpart take while they follow the same messages.
+
+    :param text: the file of the bridge.
+    :param counterpart: the program of the counterpart, and its arguments.
+    :param publishing: makes publishers on a node, and returns a function that publishes once.
+    """
     import rclpy
     from rclpy.context import Context
-    from sensor_msgs.msg import JointState
     with contextlib.ExitStack() as stack:
-        file = Path(stack.enter_context(tempfile.TemporaryDirectory()), 'chain.sdf')
-        file.write_text(chain_text(joints), encoding='utf-8')
-        bridge = RunningBridge(
-            stack, file, 'use_joint_states:=true', 'watch:=false', 'pose_topics:=[]',
-            f'publish_frequency:={publish_frequency}')
+        file = Path(stack.enter_context(tempfile.TemporaryDirectory()), 'file.sdf')
+        file.write_text(text, encoding='utf-8')
+        bridge = RunningBridge(stack, file, 'watch:=false', 'pose_topics:=[]', *parameters)
         processes = [bridge.process, bridge.start(
-            stack, sys.executable, '-c', counterpart, str(joints), stderr=subprocess.DEVNULL)]
+            stack, sys.executable, '-c', *counterpart, stderr=subprocess.DEVNULL)]
         context = Context()
         rclpy.init(args=[], context=context, domain_id=bridge.domain)
         stack.callback(context.shutdown)
-        publisher = rclpy.create_node('joints', context=context).create_publisher(
-            JointState, 'joint_states', 10)
-        wait_until(
-            lambda: publisher.get_subscription_count() >= len(processes),
-            'the nodes did not subscribe to joint_states')
+        publish = publishing(rclpy.create_node('sender', context=context))
         has_ended = threading.Event()
         stack.callback(has_ended.set)
 
-        def publish() -> None:
+        def publish_all() -> None:
             due = time.perf_counter()
-            for message in joint_states(joints):
-                if has_ended.is_set():
-                    return
-                publisher.publish(message)
-                due += 1.0 / RATE_HZ
+            while not has_ended.is_set():
+                publish()
+                due += 1.0 / rate_hz
                 time.sleep(max(0.0, due - time.perf_counter()))
 
-        threading.Thread(target=publish, daemon=True).start()
+        threading.Thread(target=publish_all, daemon=True).start()
         last: list[float] = []
 
         def ours() -> Took:
