@@ -32,12 +32,10 @@ class Document(NamedTuple):
 
     def gazebo_children_at(self, places: Iterable[Place]) -> set[int]:
         """Return the children of ``<gazebo>`` elements that contain some places."""
-        found = [
-            max((index for index, child in self.gazebo_children.items()
-                 if f'{place.element}/'.startswith(f'{child.element}/')
-                 and place.file == child.file and child.line <= place.line), default=None)
-            for place in places]
-        return {index for index in found if index is not None}
+        return {max(indices) for place in places if (indices := [
+            index for index, child in self.gazebo_children.items()
+            if f'{place.element}/'.startswith(f'{child.element}/')
+            and place.file == child.file and child.line <= place.line])}
 
 
 def document_from_file(
