@@ -9,7 +9,10 @@ from functools import partial
 import sys
 
 from sdf_pose_bridge.cli.convert import (
-    format_with_unit,
+    add_given_unit_arguments,
+    format_argument,
+    format_in_given_units,
+    FORMATS,
     formats_help,
     numbers_from_text,
     question_about_unit,
@@ -21,13 +24,8 @@ from sdf_pose_bridge.cli.loading import (
     scene_of,
     STANDARD_INPUT,
 )
-from sdf_pose_bridge.cli.printing import add_unit_arguments, CommandError, discard_output
-from sdf_pose_bridge.geometry.formats import (
-    converted_poses,
-    converted_rotations,
-    POSE_FORMATS,
-    ROTATION_FORMATS,
-)
+from sdf_pose_bridge.cli.printing import CommandError, discard_output
+from sdf_pose_bridge.geometry.formats import converted_poses, converted_rotations
 from sdf_pose_bridge.geometry.poses import Pose, pose_product
 from sdf_pose_bridge.names import printable, scoped_name
 from sdf_pose_bridge.scene.comparison import names_of_moved
@@ -58,11 +56,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help='the frame in which the pose was measured; by default the world, or the implicit '
              'root of a model file')
     parser.add_argument(
-        '--format', metavar='FORMAT', choices=(*POSE_FORMATS, *ROTATION_FORMATS),
+        '--format', metavar='FORMAT', type=format_argument, choices=FORMATS,
         default='sdf_rpy',
         help='format of the numbers; by default sdf_rpy: x y z roll pitch yaw in metres and '
              'radians. With a format of rotations the position stays')
-    add_unit_arguments(parser)
+    add_given_unit_arguments(parser)
     parser.add_argument(
         '--force', action='store_true',
         help='write numbers that look like degrees or millimetres as radians or metres')
@@ -79,8 +77,8 @@ def run(options: argparse.Namespace) -> int:
     if options.files[0] == STANDARD_INPUT:
         msg = 'the standard input cannot be changed; name a file'
         raise CommandError(msg)
-    source = format_with_unit(options.format, options.angle_unit)
-    numbers = numbers_from_text(' '.join(options.numbers), source, options.length_unit)
+    source = format_in_given_units(FORMATS[options.format], options)
+    numbers = numbers_from_text(' '.join(options.numbers), source)
     question = question_about_unit(source, numbers)
     if question and not options.force:
         msg = f'{question} --force writes them as they are'
@@ -96,10 +94,10 @@ def run(options: argparse.Namespace) -> int:
     part = options.by or options.frame
     if options.by and scene.has(scoped_name(own_name, options.by)):
         part = scoped_name(own_name, options.by)
-    if source.name in POSE_FORMATS:
-        asked = Pose(*converted_poses(numbers, source.name, 'sdf_quat_xyzw').tolist())
+    if source.position:
+        asked = Pose(*converted_poses(numbers, source, 'sdf_quat_xyzw').tolist())
     else:
-        quat_xyzw = converted_rotations(numbers, source.name, 'quaternion').tolist()
+        quat_xyzw = converted_rotations(numbers, source, 'quaternion').tolist()
         asked = Pose(*lookup.pose(part, options.relative_to).pose[:3], *quat_xyzw)
     change = pose_change(
         scene, element, pose_product(asked, lookup.pose_of_element(element, part)), measured,

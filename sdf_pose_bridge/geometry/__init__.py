@@ -4,6 +4,7 @@
 Rotations, poses and their formats; independent of SDFormat and of ROS.
 
 - :mod:`~sdf_pose_bridge.geometry.rotations`: convert between roll-pitch-yaw, quaternion, matrix
+- :mod:`~sdf_pose_bridge.geometry.sequences`: angles about three axes, one after the other
 - :mod:`~sdf_pose_bridge.geometry.poses`: compose and invert poses, and move them about axes
 - :mod:`~sdf_pose_bridge.geometry.chains`: follow chains of pointers, multiply poses along them
 - :mod:`~sdf_pose_bridge.geometry.formats`: the formats of poses, and conversions between them

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sdf_pose_bridge.geometry.formats import are_canonical_angles
+from sdf_pose_bridge.geometry.formats import ROTATION_FORMATS, UnitDoubt
 from sdf_pose_bridge.geometry.formulas import degrees_from_radians, radians_from_degrees
 from sdf_pose_bridge.geometry.rotations import (
     canonical_quaternion,
@@ -22,6 +22,7 @@ from sdf_pose_bridge.geometry.rotations import (
     rpy_from_quaternion,
     Triple,
 )
+from sdf_pose_bridge.geometry.sequences import ZYX
 
 
 class RotationForm(enum.IntEnum):
@@ -29,6 +30,9 @@ class RotationForm(enum.IntEnum):
 
     RPY = 0
     QUATERNION = 1
+
+
+_UNSET_QUATERNIONS = ((0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0, 0.0))
 
 
 class RotationAnswer(NamedTuple):
@@ -40,6 +44,8 @@ class RotationAnswer(NamedTuple):
     """x, y, z, w; unit, w >= 0."""
     gimbal_lock: bool
     """Whether pitch is within 4.5e-8 of a right angle, where roll and yaw alone are uncertain."""
+    doubt: UnitDoubt | None
+    """Why the given angles are probably in degrees, though they are said to be in radians."""
 
 
 def converted_rotation(
@@ -49,31 +55,49 @@ def converted_rotation(
     Return both representations of one rotation, as the service ConvertRotation does.
 
     :param given: a value of :class:`RotationForm`, which chooses one of the next two; the other
-        one is ignored.
+        one has to be unset: zeros, or the identity for the quaternion.
     :param rpy: roll, pitch, yaw, of any size.
     :param quat_xyzw: x, y, z, w, of any norm but zero.
     :param degrees: True if the angles, given and returned, are in degrees.
     :return: roll and yaw within a half turn, pitch within a right angle, yaw 0 at gimbal lock; the
         canonical quaternion. Angles in these ranges keep their digits.
-    :raises RotationError: an unknown value of ``given``, numbers that are not finite, or a
-        quaternion of zeros.
+    :raises RotationError: an unknown value of ``given``, a value of the other representation,
+        numbers that are not finite, or a quaternion of zeros.
     """
+    _check_unused(given, rpy, quat_xyzw)
+    doubt = None
     if given == RotationForm.RPY:
         rpy_rad: Sequence[float] = rpy
         # Angles that are not finite are not changed: the error shows them as they are given.
         if degrees and all(map(math.isfinite, rpy)):
             rpy_rad = radians_from_degrees(np.array(rpy)).tolist()
         quat = quaternion_from_rpy(rpy_rad)
+        doubt = None if degrees else ROTATION_FORMATS['rpy'].doubt(rpy)
     elif given == RotationForm.QUATERNION:
         quat = canonical_quaternion(quat_xyzw)
     else:
         known = ', '.join(f'{value.value} ({value.name})' for value in RotationForm)
         msg = f'given is {given!r}, which is neither RPY nor quaternion; known are {known}'
         raise RotationError(msg)
-    if given == RotationForm.RPY and are_canonical_angles(rpy, 180.0 if degrees else math.pi):
+    if given == RotationForm.RPY and ZYX.are_canonical(rpy[::-1], 180.0 if degrees else math.pi):
         roll, pitch, yaw = rpy
     else:
         roll, pitch, yaw = rpy_from_quaternion(quat)
         if degrees:
             roll, pitch, yaw = map(degrees_from_radians, (roll, pitch, yaw))
-    return RotationAnswer((roll + 0.0, pitch + 0.0, yaw + 0.0), quat, near_gimbal_lock(quat))
+    return RotationAnswer(
+        (roll + 0.0, pitch + 0.0, yaw + 0.0), quat, near_gimbal_lock(quat), doubt)
+
+
+def _check_unused(given: int, rpy: Triple, quat_xyzw: Quaternion) -> None:
+    """Check that a value that would be ignored is not there, as ``given`` may be forgotten."""
+    unused = ''
+    if given == RotationForm.RPY and tuple(quat_xyzw) not in _UNSET_QUATERNIONS:
+        unused = f'quaternion is {quat_xyzw}'
+    elif given == RotationForm.QUATERNION and tuple(rpy) != (0.0, 0.0, 0.0):
+        unused = f'rpy is {rpy}'
+    if unused:
+        used, other = RotationForm(given), RotationForm(1 - given)
+        msg = (f'given is {used.value} ({used.name}), but {unused}; set given to {other.value} '
+               f'({other.name}), or leave that out')
+        raise RotationError(msg)

@@ -3,8 +3,8 @@
 """
 Convert poses and rotations between the formats of robots and files.
 
-A format is one entry of a registry. It converts to one common representation and back, so every
-format converts to every other:
+A format is one entry of a table, with its names, units, and the order and meaning of its numbers.
+It converts to one common representation and back, so every format converts to every other:
 
 - poses: x, y, z in metres and the canonical quaternion x, y, z, w; shape (n, 7),
 - rotations: the same quaternion alone; shape (n, 4).
@@ -16,8 +16,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 import math
+import re
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -28,11 +29,11 @@ from sdf_pose_bridge.geometry.rotations import (
     matrix_from_quaternion,
     quaternion_from_matrix,
     quaternion_from_rotation_vector,
-    quaternion_from_rpy,
     rotation_vector_from_quaternion,
     RotationError,
-    rpy_from_quaternion,
 )
+from sdf_pose_bridge.geometry.sequences import AngleSequence, XYZ, ZYX, ZYZ
+from sdf_pose_bridge.names import NameIndex
 
 LAST_ROW = (0.0, 0.0, 0.0, 1.0)
 """Last row of the 4 x 4 matrix of a pose, exactly; libfranka compares without a tolerance."""
@@ -42,6 +43,12 @@ LARGEST_ANGLE_RAD = 2.5 * math.pi
 
 FAR_M = 100.0
 """A position that is at least this far away is probably in millimetres."""
+
+METRES, MILLIMETRES = 1.0, 1000.0
+RADIANS, DEGREES = math.pi, 180.0
+"""A metre in units of lengths, and a half turn in units of angles."""
+
+_ORDER_OR_UNIT = re.compile('[wxyz]{3,4}|rpy|ypr|row|col|deg|rad|mm')
 
 
 class PoseFormatError(ValueError):
@@ -57,53 +64,121 @@ class UnitDoubt(NamedTuple):
     """``degrees`` or ``mm``."""
 
 
+class Representation(NamedTuple):
+    """How numbers other than angles about axes represent a rotation."""
+
+    quaternions_from_numbers: Callable[[Floats], Floats]
+    """Converts finite numbers, angles in radians; raises RotationError."""
+    numbers_from_quaternions: Callable[[Floats], Floats]
+
+
 class Format(NamedTuple):
     """A format of a pose or a rotation as a row of numbers."""
 
     name: str
     """Name for users."""
-    row_length: int
-    """Number of values of a pose or rotation."""
-    meaning: str
-    """The values in their order, with units, for the help of the command line."""
-    to_common: Callable[[Floats], Floats]
-    """Converts finite rows (n, row_length) to the common representation; raises RotationError."""
-    from_common: Callable[[Floats], Floats]
-    """Converts the common representation to rows (n, row_length)."""
-    largest: float = 1.0
-    """The largest number of a rotation in the format; of angles half a turn."""
-    has_rpy: bool = False
-    """Whether the last three numbers are roll, pitch and yaw."""
+    text: str
+    """The values in their order, for people; with ``{length}`` and ``{angle}`` for units."""
+    rotation: AngleSequence | Representation
+    """How the numbers of the rotation represent it."""
+    columns: tuple[int, ...]
+    """The indices of these numbers: angles in the order of the sequence, x y z w, or row after row
+    of a matrix."""
+    half_turn: float = 0.0
+    """A half turn in the unit of angles; 0 if there are none."""
     position: tuple[int, ...] = ()
     """The indices of x, y and z of a pose."""
-    metre: float = 1.0
+    metre: float = METRES
     """A metre in the unit of the position."""
+    last_row: tuple[int, ...] = ()
+    """The indices of the last row of a matrix."""
+    synonyms: tuple[str, ...] = ()
+    """Other names."""
 
-    def doubt(self, numbers: Sequence[float]) -> UnitDoubt | None:
-        """Return why numbers are probably in another unit than the format has, or None."""
-        angles, xyz = numbers[-3:], [numbers[index] for index in self.position]
-        if self.largest == math.pi and max(map(abs, angles)) > LARGEST_ANGLE_RAD:
-            return UnitDoubt(f'the angles {_shown(angles)} are radians', 'degrees')
-        if self.metre == 1.0 and max(map(abs, xyz), default=0.0) >= FAR_M:
-            return UnitDoubt(f'the position {_shown(xyz)} is in metres', 'mm')
+    @property
+    def row_length(self) -> int:
+        """Number of values of a pose or rotation."""
+        return len(self.position) + len(self.columns) + len(self.last_row)
+
+    @property
+    def meaning(self) -> str:
+        """The values in their order, with units, for people."""
+        return self.text.format(
+            length='metres' if self.metre == METRES else 'millimetres',
+            angle='radians' if self.half_turn == RADIANS else 'degrees')
+
+    @property
+    def sequence(self) -> AngleSequence | None:
+        """The sequence of rotations; None if the numbers are not their angles."""
+        return self.rotation if isinstance(self.rotation, AngleSequence) else None
+
+    def common_from_rows(self, rows: Floats) -> Floats:
+        """
+        Convert finite rows, shape (n, row_length), to the common representation.
+
+        :raises RotationError: if they are not rotations, or no matrices of poses.
+        """
+        numbers = rows[:, self.columns]
+        if self.half_turn == DEGREES:
+            numbers = radians_from_degrees(numbers) if self.sequence else np.radians(numbers)
+        if not self.position:
+            return self.rotation.quaternions_from_numbers(numbers)
+        is_exact = rows[:, self.last_row] == LAST_ROW[:len(self.last_row)]
+        if not is_exact.all():
+            row = int(np.argmin(is_exact.all(axis=1)))
+            msg = (
+                f'row {row}: last row of the matrix is {tuple(rows[row, self.last_row].tolist())},'
+                f' and must be exactly {LAST_ROW}')
+            raise RotationError(msg)
+        quats = self.rotation.quaternions_from_numbers(numbers)
+        return np.concatenate((rows[:, self.position] / self.metre, quats), axis=1)
+
+    def rows_from_common(self, common: Floats) -> Floats:
+        """Convert the common representation to rows, shape (n, row_length)."""
+        rows = np.empty((len(common), self.row_length))
+        numbers = self.rotation.numbers_from_quaternions(common[:, -4:])
+        rows[:, self.columns] = (
+            degrees_from_radians(numbers) if self.half_turn == DEGREES else numbers)
+        if self.position:
+            rows[:, self.position] = common[:, :3] * self.metre
+            rows[:, self.last_row] = LAST_ROW[:len(self.last_row)]
+        return rows
+
+    def doubt(self, values: Sequence[float] | Floats) -> UnitDoubt | None:
+        """Return why rows are probably in another unit than the format has, or None."""
+        rows = np.reshape(values, (-1, self.row_length))
+        if self.half_turn == RADIANS:
+            angles = rows[:, sorted(self.columns)]
+            is_large = (np.abs(angles) > LARGEST_ANGLE_RAD).any(axis=1)
+            if is_large.any():
+                shown = _shown(angles[np.argmax(is_large)].tolist())
+                return UnitDoubt(f'the angles {shown} are radians', 'degrees')
+        if self.metre == METRES and self.position:
+            xyz = rows[:, self.position]
+            is_far = (np.abs(xyz) >= FAR_M).any(axis=1)
+            if is_far.any():
+                shown = _shown(xyz[np.argmax(is_far)].tolist())
+                return UnitDoubt(f'the position {shown} is in metres', 'mm')
         return None
 
 
 def converted_poses(
     values: Sequence[float] | Sequence[Sequence[float]] | Floats,
-    from_format: str,
-    to_format: str,
+    from_format: str | Format,
+    to_format: str | Format,
 ) -> Floats:
     """
     Convert poses from one format to another.
 
     :param values: any number of poses one after another, shape (n * row_length,), or one in each
         row, shape (n, row_length).
-    :param from_format: format of the values, a name in :data:`POSE_FORMATS`.
+    :param from_format: format of the values, a name in :data:`POSE_FORMATS` or a synonym.
     :param to_format: format of the result; if it is the same, the poses become canonical.
     :return: the poses, shape (n * row_length,) or (n, row_length) like the values; new memory.
-        Roll and yaw are within a half turn, pitch within a right angle, and yaw is 0 at gimbal
-        lock. Angles in these ranges keep their digits between formats that have angles.
+        The first and the last angle are within a half turn, the middle one (pitch) within a right
+        angle, or from 0 to a half turn if the first and the last axis are the same. At gimbal lock
+        the first one (yaw) is 0. Angles in these ranges keep their digits between formats with the
+        same sequence.
     :raises PoseFormatError: an unknown format, a wrong length, values that are not finite, a
         quaternion of zeros, or a matrix that is not a rotation to within 1e-5.
     """
@@ -112,8 +187,8 @@ def converted_poses(
 
 def converted_rotations(
     values: Sequence[float] | Sequence[Sequence[float]] | Floats,
-    from_format: str,
-    to_format: str,
+    from_format: str | Format,
+    to_format: str | Format,
 ) -> Floats:
     """
     Convert rotations as :func:`converted_poses` does poses, between :data:`ROTATION_FORMATS`.
@@ -129,33 +204,56 @@ def without_rounding_errors(values: Floats, source: Format, target: Format) -> F
 
     :param values: rows in the target format, shape (n, row_length).
     :return: a copy in which numbers of a rotation are zero that are below four units of rounding
-        of the largest number; between formats with roll, pitch and yaw, which are exact, a copy.
+        of the largest number; between formats with the same sequence of rotations, which are
+        exact, a copy.
     """
     shown: Floats = values.copy()
-    if source is not target and not (source.has_rpy and target.has_rpy):
-        is_error = np.abs(values) < 4.0 * np.finfo(float).eps * target.largest
+    is_same_sequence = source.sequence is not None and source.sequence is target.sequence
+    if source is not target and not is_same_sequence:
+        largest = target.half_turn or 1.0
+        is_error = np.abs(values) < 4.0 * np.finfo(float).eps * largest
         is_error[:, list(target.position)] = False
         shown[is_error] = 0.0
     return shown
 
 
-def are_canonical_angles(rpy: Any, half_turn: float) -> Any:
-    """Return whether angles are in their ranges and not near gimbal lock; floats or arrays."""
-    roll, pitch, yaw = rpy
-    return (
-        (abs(roll) <= half_turn) & (abs(yaw) <= half_turn)
-        & (abs(pitch) * (2.0 + 1e-7) <= half_turn))
+def format_from_name(name: str, formats: Mapping[str, Format], what: str) -> Format:
+    """
+    Return the format with a name or synonym.
+
+    :param what: ``pose`` or ``rotation``, for the message.
+    :raises PoseFormatError: if there is none; the message has all names, and the nearest one that
+        has the same order and unit.
+    """
+    for each in formats.values():
+        if name == each.name or name in each.synonyms:
+            return each
+    msg = (f'there is no {what} format {name!r}; known are {", ".join(formats)}'
+           f'{_hint(str(name), formats)}')
+    raise PoseFormatError(msg)
+
+
+def _hint(wanted: str, formats: Mapping[str, Format]) -> str:
+    """Return the end of a message with the nearest name, unless its order or unit is another."""
+    orders_and_units = set(_ORDER_OR_UNIT.findall(wanted))
+    kinds = {*wanted.split('_')} & {name.split('_')[0] for name in formats}
+    alike = {
+        name: each for each in formats.values() for name in (each.name, *each.synonyms)
+        if set(_ORDER_OR_UNIT.findall(name)) == orders_and_units and kinds <= {*name.split('_')}}
+    nearest = NameIndex(alike).nearest(wanted)
+    return f'; did you mean "{nearest}" ({alike[nearest].meaning})?' if nearest else ''
 
 
 def _converted(
     values: object,
-    from_format: str,
-    to_format: str,
+    from_format: str | Format,
+    to_format: str | Format,
     formats: Mapping[str, Format],
     what: str,
 ) -> Floats:
-    source = _format_from_name(from_format, formats, what)
-    target = _format_from_name(to_format, formats, what)
+    source, target = (
+        each if isinstance(each, Format) else format_from_name(each, formats, what)
+        for each in (from_format, to_format))
     array = _array(values, source, what)
     rows = array.reshape(-1, source.row_length)
     is_finite = np.isfinite(rows)
@@ -166,20 +264,21 @@ def _converted(
                ' it must be a finite number')
         raise PoseFormatError(msg)
     try:
-        common = source.to_common(rows)
+        common = source.common_from_rows(rows)
     except RotationError as error:
         message = str(error).removeprefix('row 0: ' if len(rows) == 1 else '')
         msg = f'{source.name}: {message}'
         raise PoseFormatError(msg) from error
     with np.errstate(over='ignore'):
-        result = target.from_common(common)
-    if source.has_rpy and target.has_rpy:
+        result = target.rows_from_common(common)
+    if source.sequence is not None and source.sequence is target.sequence:
         # Rounding must not change angles that are already canonical.
-        are_canonical = are_canonical_angles(rows[:, -3:].T, source.largest)
-        angles = rows[are_canonical, -3:]
-        if target.largest != source.largest:
-            angles = angles * target.largest / source.largest
-        result[are_canonical, -3:] = angles
+        angles = rows[:, source.columns]
+        are_canonical = source.sequence.are_canonical(angles.T, source.half_turn)
+        angles = angles[are_canonical]
+        if target.half_turn != source.half_turn:
+            angles = angles * target.half_turn / source.half_turn
+        result[np.ix_(are_canonical, target.columns)] = angles
     result += 0.0  # no negative zeros
     is_finite = np.isfinite(result)
     if not is_finite.all():
@@ -190,14 +289,6 @@ def _converted(
             f' {target.name}')
         raise PoseFormatError(msg)
     return result.reshape(-1) if array.ndim == 1 else result
-
-
-def _format_from_name(name: str, formats: Mapping[str, Format], what: str) -> Format:
-    try:
-        return formats[name]
-    except (KeyError, TypeError):
-        msg = f'there is no {what} format {name!r}; known are {", ".join(formats)}'
-        raise PoseFormatError(msg) from None
 
 
 def _array(values: object, source: Format, what: str) -> Floats:
@@ -225,103 +316,87 @@ def _shown(numbers: Sequence[float]) -> str:
     return ' '.join(f'{number:g}' for number in numbers)
 
 
-def _pose_format(
-    name: str, meaning: str, rotation: Format, metre: float = 1.0, *,
-    position: tuple[int, ...] = (0, 1, 2), rest: Sequence[int] = (), last_row: Sequence[int] = (),
-) -> Format:
-    """
-    Return a format with a position and a rotation.
+# The table
 
-    :param position: the indices of x, y and z.
-    :param rest: the indices of the numbers of the rotation, if they do not follow the position.
-    :param last_row: the indices of the last row of a matrix.
-    """
-    rotated = list(rest or range(3, 3 + rotation.row_length))
-    constant, constants = list(last_row), LAST_ROW[:len(last_row)]
-    row_length = 3 + len(rotated) + len(constant)
+_QUATERNION = Representation(canonical_quaternion, np.copy)
+_ROTATION_VECTOR = Representation(quaternion_from_rotation_vector, rotation_vector_from_quaternion)
+_MATRIX = Representation(
+    lambda rows: quaternion_from_matrix(rows.reshape(-1, 3, 3)),
+    lambda quats: matrix_from_quaternion(quats).reshape(-1, 9))
 
-    def poses_from_rows(rows: Floats) -> Floats:
-        is_exact = rows[:, constant] == constants
-        if not is_exact.all():
-            row = int(np.argmin(is_exact.all(axis=1)))
-            msg = (
-                f'row {row}: last row of the matrix is {tuple(rows[row, constant].tolist())}, and'
-                f' must be exactly {LAST_ROW}')
-            raise RotationError(msg)
-        return np.concatenate(
-            (rows[:, position] / metre, rotation.to_common(rows[:, rotated])), axis=1)
 
-    def rows_from_poses(poses: Floats) -> Floats:
-        rows = np.empty((len(poses), row_length))
-        rows[:, position] = poses[:, :3] * metre
-        rows[:, rotated] = rotation.from_common(poses[:, 3:])
-        rows[:, constant] = constants
-        return rows
+def _fixed_xyz(numbers: str) -> Format:
+    """Return angles in degrees about the fixed axes x, y and z, in the order of the numbers."""
+    text = f'{numbers} in {{angle}} about the fixed axes x, y, z'
+    return Format('', text, ZYX, (2, 1, 0), DEGREES)
 
+
+def _turned(numbers: str, sequence: AngleSequence) -> Format:
+    """Return angles in degrees of a sequence, in the order of the numbers."""
+    return Format('', f'{numbers} in {{angle}} ({sequence.name})', sequence, (0, 1, 2), DEGREES)
+
+
+def _pose(name: str, metre: float, rotation: Format, *synonyms: str) -> Format:
+    """Return a format with the numbers x y z of the position, and then those of a rotation."""
     return rotation._replace(
-        name=name, row_length=row_length, meaning=meaning, to_common=poses_from_rows,
-        from_common=rows_from_poses, position=position, metre=metre)
+        name=name, text=f'x y z in {{length}}, {rotation.text}', position=(0, 1, 2), metre=metre,
+        columns=tuple(3 + column for column in rotation.columns), synonyms=synonyms)
 
 
 def _registry(*formats: Format) -> Mapping[str, Format]:
     return MappingProxyType({entry.name: entry for entry in formats})
 
 
+_RPY = Format('rpy', 'roll pitch yaw in {angle}', ZYX, (2, 1, 0), RADIANS)
+_YPR = Format('ypr', 'yaw pitch roll in {angle}', ZYX, (0, 1, 2), RADIANS)
+_XYZW = Format('quaternion', 'quaternion x y z w of any norm but 0', _QUATERNION, (0, 1, 2, 3))
+_WXYZ = Format(
+    'quaternion_wxyz', 'quaternion w x y z of any norm but 0', _QUATERNION, (1, 2, 3, 0))
+_VECTOR = Format(
+    'rotation_vector', 'rotation vector (axis times angle) in {angle}', _ROTATION_VECTOR,
+    (0, 1, 2), RADIANS)
+
 ROTATION_FORMATS = _registry(
+    _RPY._replace(synonyms=('rpy_radians',)),
+    _RPY._replace(name='rpy_degrees', half_turn=DEGREES, synonyms=('rpy_deg',)),
+    _YPR._replace(synonyms=('ypr_radians',)),
+    _YPR._replace(name='ypr_degrees', half_turn=DEGREES, synonyms=('ypr_deg',)),
+    _XYZW._replace(synonyms=('quaternion_xyzw', 'quat', 'quat_xyzw')),
+    _WXYZ._replace(synonyms=('quat_wxyz',)),
     Format(
-        'rpy', 3, 'roll pitch yaw in radians', quaternion_from_rpy, rpy_from_quaternion,
-        largest=math.pi, has_rpy=True,
-    ),
-    Format(
-        'rpy_degrees', 3, 'roll pitch yaw in degrees',
-        lambda row: quaternion_from_rpy(radians_from_degrees(row)),
-        lambda quat: degrees_from_radians(rpy_from_quaternion(quat)),
-        largest=180.0, has_rpy=True,
-    ),
-    Format('quaternion', 4, 'x y z w of any norm but 0', canonical_quaternion, np.copy),
-    Format(
-        'quaternion_wxyz', 4, 'w x y z of any norm but 0',
-        lambda row: canonical_quaternion(row[:, [1, 2, 3, 0]]),
-        lambda quat: quat[:, [3, 0, 1, 2]],
-    ),
-    Format(
-        'matrix', 9, '3 x 3 matrix row after row',
-        lambda row: quaternion_from_matrix(row.reshape(-1, 3, 3)),
-        lambda quat: matrix_from_quaternion(quat).reshape(-1, 9),
-    ),
-    Format(
-        'rotation_vector', 3, 'axis times angle in radians',
-        quaternion_from_rotation_vector, rotation_vector_from_quaternion, largest=math.pi,
-    ),
-    Format(
-        'rotation_vector_degrees', 3, 'axis times angle in degrees',
-        lambda row: quaternion_from_rotation_vector(np.radians(row)),
-        lambda quat: degrees_from_radians(rotation_vector_from_quaternion(quat)), largest=180.0,
-    ),
+        'matrix', '3 x 3 matrix row after row', _MATRIX, tuple(range(9)),
+        synonyms=('rotation_matrix',)),
+    _VECTOR._replace(synonyms=('rotvec', 'axis_angle')),
+    _VECTOR._replace(
+        name='rotation_vector_degrees', half_turn=DEGREES, synonyms=('rotvec_degrees',)),
 )
 """All formats of rotations by name; their common representation has shape (n, 4)."""
 
 POSE_FORMATS = _registry(
-    _pose_format(
-        'sdf_rpy', 'x y z in metres, roll pitch yaw in radians', ROTATION_FORMATS['rpy']),
-    _pose_format(
-        'sdf_rpy_degrees', 'x y z in metres, roll pitch yaw in degrees',
-        ROTATION_FORMATS['rpy_degrees']),
-    _pose_format(
-        'sdf_quat_xyzw', 'x y z in metres, quaternion x y z w of any norm but 0',
-        ROTATION_FORMATS['quaternion']),
-    _pose_format(
-        'matrix_row_major', '4 x 4 matrix row after row, in metres', ROTATION_FORMATS['matrix'],
-        position=(3, 7, 11), rest=(0, 1, 2, 4, 5, 6, 8, 9, 10), last_row=(12, 13, 14, 15)),
-    _pose_format(
-        'franka_matrix', '4 x 4 matrix column after column, in metres', ROTATION_FORMATS['matrix'],
-        position=(12, 13, 14), rest=(0, 4, 8, 1, 5, 9, 2, 6, 10), last_row=(3, 7, 11, 15)),
-    _pose_format(
-        'franka_measured',
-        "x y z in millimetres, rotations x y z in degrees (z-y'-x'': x is roll, z is yaw)",
-        ROTATION_FORMATS['rpy_degrees'], metre=1000.0),
-    _pose_format(
-        'ur_pose', 'x y z in metres, rotation vector (axis times angle) in radians',
-        ROTATION_FORMATS['rotation_vector']),
+    _pose('sdf_rpy', METRES, _RPY, 'sdf_rpy_radians'),
+    _pose('sdf_rpy_degrees', METRES, _RPY._replace(half_turn=DEGREES), 'sdf_rpy_deg'),
+    _pose('sdf_quat_xyzw', METRES, _XYZW, 'sdf_quat'),
+    Format(
+        'matrix_row_major', '4 x 4 matrix row after row, in {length}', _MATRIX,
+        (0, 1, 2, 4, 5, 6, 8, 9, 10), position=(3, 7, 11), last_row=(12, 13, 14, 15)),
+    Format(
+        'franka_matrix', '4 x 4 matrix column after column, in {length}', _MATRIX,
+        (0, 4, 8, 1, 5, 9, 2, 6, 10), position=(12, 13, 14), last_row=(3, 7, 11, 15),
+        synonyms=('matrix_column_major', 'matrix_col_major')),
+    _pose('franka_measured', MILLIMETRES, _fixed_xyz('rotations x y z')),
+    _pose('ur_pose', METRES, _VECTOR),
+    _pose('ur_pendant', MILLIMETRES, _VECTOR),
+    _pose('kuka_abc', MILLIMETRES, _turned('A B C', ZYX), 'kuka'),
+    _pose('abb', MILLIMETRES, _WXYZ, 'abb_quaternion'),
+    _pose('fanuc_wpr', MILLIMETRES, _fixed_xyz('W P R'), 'fanuc'),
+    _pose('yaskawa', MILLIMETRES, _fixed_xyz('Rx Ry Rz'), 'motoman'),
+    _pose('staubli', MILLIMETRES, _turned('Rx Ry Rz', XYZ)),
+    _pose('kawasaki_oat', MILLIMETRES, _turned('O A T', ZYZ), 'kawasaki'),
+    _pose('doosan', MILLIMETRES, _turned('A B C', ZYZ)),
+    _pose('kinova', METRES, _fixed_xyz('theta_x theta_y theta_z')),
+    _pose('mujoco', METRES, _WXYZ, 'sdf_quat_wxyz'),
+    _pose('mitsubishi', MILLIMETRES, _fixed_xyz('A B C'), 'melfa'),
+    _pose('denso', MILLIMETRES, _fixed_xyz('RX RY RZ')),
+    _pose('epson_uvw', MILLIMETRES, _turned('U V W', ZYX), 'epson'),
 )
 """All formats of poses by name; their common representation has shape (n, 7)."""

@@ -24,7 +24,12 @@ from sdf_pose_bridge.errors import (
     UnknownFrameError,
 )
 from sdf_pose_bridge.geometry.converted_rotation import converted_rotation
-from sdf_pose_bridge.geometry.formats import converted_poses, POSE_FORMATS, PoseFormatError
+from sdf_pose_bridge.geometry.formats import (
+    converted_poses,
+    format_from_name,
+    POSE_FORMATS,
+    PoseFormatError,
+)
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import RotationError
 from sdf_pose_bridge.ros.background import Worker
@@ -103,6 +108,8 @@ def answer_to_convert_rotation(
     _fill(response.rpy, answer.rpy)
     _fill(response.quaternion, answer.quat_xyzw)
     response.gimbal_lock = answer.gimbal_lock
+    if answer.doubt:
+        response.message = f'{answer.doubt.reason}; did you mean degrees: true?'
 
 
 def answer_to_convert_poses(
@@ -114,6 +121,9 @@ def answer_to_convert_poses(
         raise PoseFormatError(msg)
     converted = converted_poses(
         np.asarray(request.values), request.from_format, request.to_format)
+    source = format_from_name(request.from_format, POSE_FORMATS, 'pose')
+    if doubt := source.doubt(request.values):
+        response.message = f'{doubt.reason}; did you mean {doubt.likely_unit}?'
     # The message would check every element of anything but an array.array.
     response.values = array.array('d', converted.tobytes())
 

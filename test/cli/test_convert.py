@@ -91,20 +91,110 @@ def test_numbers_in_another_unit_are_asked_about(convert, source, given, questio
     assert convert('--from', source, '--to', source, lines=given)[1:] == (out, err)
 
 
-def test_a_format_without_degrees_is_refused(convert):
-    code, out, err = convert('--from', 'ur_pose', '--degrees', *'000000')
+@pytest.mark.parametrize(('source', 'option', 'given'), [
+    ('rpy', '--degrees', '0 0 90'), ('ur_pose', '--degrees', '0 0 0 0 0 90'),
+    ('sdf_quat_xyzw', '--mm', '300 0 0 0 0 0 1'), ('kinova', '--mm', '300 0 0 0 0 90'),
+    ('matrix_row_major', '--mm', '1 0 0 300 0 1 0 0 0 0 1 0 0 0 0 1')])
+def test_the_option_that_a_question_names_is_its_answer(convert, source, option, given):
+    _, _, question = convert('--from', source, *given.split())
+    assert question.endswith(f'did you mean {option}?\n')
+    code, out, err = convert('--from', source, option, *given.split())
+    assert (code, err) == (0, '')
+    values = dict(line.split(maxsplit=1) for line in out.splitlines())
+    if option == '--mm':
+        assert numbers(values['sdf_rpy'])[0] == 0.3
+    else:
+        largest = max(map(abs, numbers(values[source])))
+        assert largest == pytest.approx(math.pi / 2, abs=1e-15)
+
+
+@pytest.mark.parametrize(('source', 'option', 'count'), [
+    ('quaternion', '--degrees', 4), ('matrix', '--radians', 9), ('rpy', '--mm', 3)])
+def test_a_unit_of_numbers_that_the_format_does_not_have_is_an_error(
+        convert, source, option, count):
+    code, out, err = convert('--from', source, option, *['1'] * count)
     assert (code, out) == (1, '')
-    assert 'ur_pose is always in radians' in err
+    assert f'leave out {option}' in err
+
+
+def test_a_wrong_name_is_hinted_at(convert):
+    _, _, err = convert('--from', 'quaternon', '0', '0', '0', '1')
+    assert err.endswith('did you mean "quaternion" (quaternion x y z w of any norm but 0)?\n')
 
 
 # Output.
 
-def test_units_are_those_of_the_given_and_the_requested_numbers(convert):
+@pytest.mark.parametrize(('arguments', 'target', 'expected'), [
+    ('--mm --from sdf_rpy 300 0 500 0 0 0', 'sdf_rpy', [0.3, 0, 0.5, 0, 0, 0]),
+    ('--mm --from franka_measured 300 0 0 0 0 90', 'franka_measured', [300, 0, 0, 0, 0, 90]),
+    ('--degrees --from rpy 0 0 90', 'rpy', [0, 0, math.pi / 2]),
+    ('--radians --from rpy_degrees 0 0 1.5', 'rpy', [0, 0, 1.5]),
+    ('--from quaternion_xyzw 0.5 0 0 0.866', 'rpy_degrees', [60.0014555617, 0, 0]),
+])
+def test_units_are_those_of_the_given_numbers_alone(convert, arguments, target, expected):
+    code, out, err = convert(*arguments.split(), '--to', target)
+    assert (code, err) == (0, '')
+    assert numbers(out) == pytest.approx(expected, abs=1e-9)
+
+
+@pytest.mark.parametrize(('target', 'text'), [
+    ('urdf_origin', '<origin xyz="1.0 2.0 3.0" rpy="0.0 0.0 0.5"/>'),
+    ('sdf_pose', '<pose>1.0 2.0 3.0 0.0 0.0 0.5</pose>'),
+    ('static_transform_publisher', ' '.join((
+        '--x 1.0 --y 2.0 --z 3.0 --qx 0.0 --qy 0.0',
+        f'--qz {math.sin(0.25)} --qw {math.cos(0.25)}')))])
+def test_a_pose_is_printed_as_text(convert, target, text):
+    assert convert('--from', 'sdf_rpy', '--to', target, *'1 2 3 0 0 0.5'.split()) == (
+        0, f'{text}\n', '')
+
+
+@pytest.mark.parametrize(('target', 'is_locked'), [
+    ('rpy', True), ('ypr_degrees', True), ('quaternion', False), (None, True)])
+def test_gimbal_lock_is_reported(convert, target, is_locked):
+    to = ['--to', target] if target else []
+    code, _, err = convert('--from', 'rpy_degrees', *to, '10', '90', '20')
+    assert code == 0
+    assert ('near gimbal lock' in err) is is_locked
+
+
+def test_gimbal_lock_is_that_of_the_sequence(convert):
+    straight_down = ['--from', 'sdf_rpy_degrees', *'0 0 0 180 0 20'.split()]
+    assert "(z-y'-z'')" in convert(*straight_down, '--to', 'kawasaki_oat')[2]
+    assert convert(*straight_down)[2] == ''
+
+
+# Products.
+
+@pytest.mark.parametrize(('arguments', 'expected'), [
+    ('--inverse', [0, 1, 0, 0, 0, -90]),
+    ('--times 2 0 0 0 0 30', [1, 2, 0, 0, 0, 120]),
+    ('--times 2 0 0 0 0 30 --times 0 0 1 0 0 0', [1, 2, 1, 0, 0, 120]),
+    ('--times kuka_abc 2000 0 0 30 0 0', [1, 2, 0, 0, 0, 120]),
+    ('--times-inverse 2 0 0 0 0 30', [0, -(3 ** 0.5), 0, 0, 0, 60]),
+    ('--inverse --times 1 0 0 0 0 90', [0, 0, 0, 0, 0, 0]),
+    ('--times sdf_quat_xyzw 0 0 -1 0 0 0 1', [1, 0, -1, 0, 0, 90]),
+])
+def test_poses_are_inverted_and_multiplied(convert, arguments, expected):
     code, out, err = convert(
-        '--from', 'sdf_rpy', '--to', 'sdf_rpy', '--degrees', '--mm', *'300 0 0 0 0 90'.split())
-    assert (code, numbers(out), err) == (0, [300.0, 0.0, 0.0, 0.0, 0.0, 90.0], '')
-    _, out, _ = convert('--from', 'sdf_rpy', '--mm', *'300 0 0 0 0 0'.split())
-    assert numbers(out.splitlines()[0].split(maxsplit=1)[1])[0] == 0.3
+        '--from', 'sdf_rpy_degrees', *'1 0 0 0 0 90'.split(), *arguments.split(),
+        '--to', 'sdf_rpy_degrees')
+    assert (code, err) == (0, '')
+    assert numbers(out) == pytest.approx(expected, abs=1e-12)
+
+
+def test_each_line_is_multiplied(convert):
+    _, out, _ = convert('--from', 'rpy_degrees', '--times', 'ypr_degrees', '10', '0', '0', '--to',
+                        'rpy_degrees', lines='0 0 5\n0 0 -5\n')
+    assert numbers(out) == pytest.approx([0, 0, 15, 0, 0, 5], abs=1e-12)
+
+
+@pytest.mark.parametrize(('factor', 'message'), [
+    ('1 2', 'sdf_rpy has 6 numbers'), ('rpy 0 0 0', 'cannot be multiplied with rpy'),
+    ('quat 0 0 0 0', 'cannot be multiplied with quaternion'), ('sdf_quat 0 0 0 0 0 0 0', 'zero')])
+def test_a_wrong_factor_is_an_error(convert, factor, message):
+    code, out, err = convert('--from', 'sdf_rpy', *'000000', '--times', *factor.split())
+    assert (code, out) == (1, '')
+    assert message in err
 
 
 def test_options_may_follow_the_numbers(convert):

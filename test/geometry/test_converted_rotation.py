@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from sdf_pose_bridge.geometry.converted_rotation import converted_rotation, RotationForm
 from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy, RotationError
 
-NO_RPY = (math.nan, math.nan, math.nan)
-NO_QUATERNION = (0.0, 0.0, 0.0, 0.0)
+NO_RPY = (0.0, 0.0, 0.0)
+NO_QUATERNION = (0.0, 0.0, 0.0, 1.0)
 
 angles = st.floats(allow_nan=False, allow_infinity=False)
 
@@ -32,6 +32,23 @@ def converted_quaternion(*quat_xyzw, degrees=False):
 def test_an_unknown_representation_is_an_error_that_lists_the_known_ones(unknown):
     with pytest.raises(RotationError, match=rf'given is {unknown}.*0 \(RPY\), 1 \(QUATERNION\)'):
         converted_rotation(unknown, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), degrees=False)
+
+
+@pytest.mark.parametrize(('given', 'rpy', 'quat_xyzw'), [
+    (RotationForm.RPY, NO_RPY, (0.0, 0.0, 0.7, 0.7)),
+    (RotationForm.RPY, NO_RPY, (0.0, 0.0, math.nan, 1.0)),
+    (RotationForm.RPY, (0.0, 0.0, 1.0), (0.0, 0.0, 0.7, 0.7)),
+    (RotationForm.QUATERNION, (0.0, 0.0, 1.0), NO_QUATERNION),
+    (RotationForm.QUATERNION, (0.0, math.nan, 0.0), NO_QUATERNION)])
+def test_a_value_that_would_be_ignored_is_an_error_with_the_cure(given, rpy, quat_xyzw):
+    with pytest.raises(RotationError, match=rf'given is {given.value} .*set given to {1 - given}'):
+        converted_rotation(given, rpy, quat_xyzw, degrees=False)
+
+
+def test_a_quaternion_of_zeros_is_unset():
+    zeros = (0.0, 0.0, 0.0, 0.0)
+    answer = converted_rotation(RotationForm.RPY, (0.0, 0.0, 1.0), zeros, degrees=False)
+    assert answer.rpy == (0.0, 0.0, 1.0)
 
 
 def test_yaw_alone():

@@ -28,17 +28,14 @@ from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
 LENGTHS = {
     'sdf_rpy': 6, 'sdf_rpy_degrees': 6, 'sdf_quat_xyzw': 7,
     'matrix_row_major': 16, 'franka_matrix': 16, 'franka_measured': 6, 'ur_pose': 6,
+    'ur_pendant': 6, 'kuka_abc': 6, 'abb': 7, 'fanuc_wpr': 6, 'yaskawa': 6, 'staubli': 6,
+    'kawasaki_oat': 6, 'doosan': 6, 'kinova': 6, 'mujoco': 7, 'mitsubishi': 6, 'denso': 6,
+    'epson_uvw': 6,
 }
 IDENTITY_MATRIX = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 GOOD = {
-    'sdf_rpy': (1.0, 2.0, 3.0, 0.1, 0.2, 0.3),
-    'sdf_rpy_degrees': (1.0, 2.0, 3.0, 10.0, 20.0, 30.0),
-    'sdf_quat_xyzw': (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0),
-    'matrix_row_major': IDENTITY_MATRIX,
-    'franka_matrix': IDENTITY_MATRIX,
-    'franka_measured': (1000.0, 2000.0, 3000.0, 10.0, 20.0, 30.0),
-    'ur_pose': (1.0, 2.0, 3.0, 0.1, 0.2, 0.3),
-}
+    name: IDENTITY_MATRIX if length == 16 else (1.0, 2.0, 3.0, 0.1, 0.2, 0.3, 0.4)[:length]
+    for name, length in LENGTHS.items()}
 
 every_format = pytest.mark.parametrize('name', LENGTHS)
 matrix_formats = pytest.mark.parametrize('name', ['matrix_row_major', 'franka_matrix'])
@@ -174,8 +171,17 @@ def test_one_pose_in_all_formats(name):
             half, 0, root, 0,
             1, 2, 3, 1,
         ),
-        'franka_measured': (1000, 2000, 3000, 30, 0, 90),
     }
+    same['mujoco'] = [*same['sdf_quat_xyzw'][:3], *np.roll(same['sdf_quat_xyzw'][3:], 1)]
+    same['kinova'] = same['sdf_rpy_degrees']
+    for each, angles in (
+        ('franka_measured', (30, 0, 90)), ('kuka_abc', (90, 0, 30)), ('fanuc_wpr', (30, 0, 90)),
+        ('yaskawa', (30, 0, 90)), ('staubli', (0, 30, 90)), ('kawasaki_oat', (0, 30, 90)),
+        ('doosan', (0, 30, 90)), ('mitsubishi', (30, 0, 90)), ('denso', (30, 0, 90)),
+        ('epson_uvw', (90, 0, 30)), ('ur_pendant', same['ur_pose'][3:]),
+        ('abb', same['mujoco'][3:]),
+    ):
+        same[each] = (1000, 2000, 3000, *angles)
     for target, expected in same.items():
         answer = converted_poses(same[name], name, target)
         assert answer == pytest.approx(expected, abs=3e-14), target
@@ -217,7 +223,9 @@ def test_translations_are_exact():
     assert metres[:3].tolist() == [0.0011, 0.0022, 0.0033]
 
 
-@pytest.mark.parametrize(('source', 'target'), [*itertools.product(LENGTHS, repeat=2)])
+@pytest.mark.parametrize(
+    ('source', 'target'), [*itertools.product(LENGTHS, [*LENGTHS][:7]), ('staubli', 'abb'),
+                           ('doosan', 'kawasaki_oat'), ('epson_uvw', 'denso')])
 def test_every_format_converts_to_every_other_and_back(source, target):
     quats = np.concatenate(
         (random_quaternions(200), half_turns()[::5], quaternion_from_rpy(lock_rpy(200)))
@@ -226,7 +234,7 @@ def test_every_format_converts_to_every_other_and_back(source, target):
     again = converted_poses(converted_poses(rows, source, target), target, source)
     common = converted_poses(rows, source, 'sdf_quat_xyzw')
     common_again = converted_poses(again, source, 'sdf_quat_xyzw')
-    assert np.abs(common - common_again)[:, :3].max() <= 1e-15
+    assert np.abs(common - common_again)[:, :3].max() <= 2e-15
     assert largest_angle(common[:, 3:], common_again[:, 3:]) <= 8 * MAX_ANGLE
 
 
@@ -251,6 +259,51 @@ def test_angles_in_their_ranges_keep_their_digits(roll, pitch, yaw):
     assert converted_poses(row, 'sdf_rpy_degrees', 'sdf_rpy')[3:].tolist() == [
         angle * math.pi / 180.0 for angle in angles
     ]
+
+
+def test_angles_keep_their_digits_in_another_order():
+    assert converted_poses((1, 2, 3, 10.1, 20, 30.3), 'kuka_abc', 'denso').tolist() == [
+        1.0, 2.0, 3.0, 30.3, 20.0, 10.1]
+    assert converted_poses((1, 2, 3, 10.1, 20, 30.3), 'kawasaki_oat', 'doosan').tolist() == [
+        1.0, 2.0, 3.0, 10.1, 20.0, 30.3]
+
+
+# Names and units.
+
+def test_a_name_belongs_to_one_format():
+    names = [
+        name for each in (*POSE_FORMATS.values(), *ROTATION_FORMATS.values())
+        for name in (each.name, *each.synonyms)]
+    assert len(names) == len(set(names))
+
+
+@pytest.mark.parametrize(('synonym', 'name'), [
+    ('sdf_quat_wxyz', 'mujoco'), ('matrix_column_major', 'franka_matrix'),
+    ('matrix_col_major', 'franka_matrix'), ('abb_quaternion', 'abb')])
+def test_a_synonym_is_accepted(synonym, name):
+    assert np.array_equal(converted_poses(GOOD[name], synonym, 'sdf_rpy'),
+                          converted_poses(GOOD[name], name, 'sdf_rpy'))
+
+
+@pytest.mark.parametrize(('wrong', 'hint'), [
+    ('sdf_quat_xzyw', ''), ('sdf_quat_wxyzz', 'sdf_quat_wxyz'), ('matrix_major', ''),
+    ('matrix_row', 'matrix_row_major'), ('sdf_rpy_degree', 'sdf_rpy_degrees'), ('sdf_ypr', ''),
+    ('ur_pose_degrees', ''), ('franka_pose', 'franka_measured'), ('kuka_acb', 'kuka_abc'),
+    ('yaskava', 'yaskawa')])
+def test_a_hint_has_the_order_and_the_unit_of_the_wrong_name(wrong, hint):
+    with pytest.raises(PoseFormatError) as error:
+        converted_poses(GOOD['sdf_rpy'], wrong, 'sdf_rpy')
+    assert str(error.value).partition('; did you mean "')[2].partition('"')[0] == hint
+
+
+@pytest.mark.parametrize(('name', 'row', 'likely_unit'), [
+    ('sdf_rpy', (1, 2, 3, 0, 0, 90), 'degrees'), ('ur_pose', (1, 2, 3, 0, 8, 0), 'degrees'),
+    ('sdf_rpy_degrees', (1, 2, 1197, 0, 0, 90), 'mm'),
+    ('matrix_row_major', (1, 0, 0, 0, 0, 1, 0, -100, 0, 0, 1, 0, 0, 0, 0, 1), 'mm'),
+    ('sdf_rpy', (99, 2, 3, 0, 0, 7.8), ''), ('kuka_abc', (1197, 0, 0, 90, 0, 0), '')])
+def test_a_row_in_another_unit_is_doubted(name, row, likely_unit):
+    doubt = POSE_FORMATS[name].doubt([*GOOD[name], *row])
+    assert (doubt.likely_unit if doubt else '') == likely_unit
 
 
 # Shapes.
@@ -299,6 +352,8 @@ def test_rotations_convert_between_all_formats(source, target):
     quarter = {
         'rpy': (0, 0, math.pi / 2),
         'rpy_degrees': (0, 0, 90),
+        'ypr': (math.pi / 2, 0, 0),
+        'ypr_degrees': (90, 0, 0),
         'quaternion': (0, 0, math.sqrt(0.5), math.sqrt(0.5)),
         'quaternion_wxyz': (math.sqrt(0.5), 0, 0, math.sqrt(0.5)),
         'matrix': (0, -1, 0, 1, 0, 0, 0, 0, 1),

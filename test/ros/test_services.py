@@ -65,6 +65,7 @@ def look_up(frame, relative_to=''):
     ({'given': 2}, '2'),
     ({'rpy': (0.0, math.nan, 0.0)}, 'nan'),
     ({'given': 1, 'quat_xyzw': (0.0, math.nan, 0.0, 1.0)}, 'nan'),
+    ({'quat_xyzw': (0.0, 0.0, 0.7, 0.7)}, 'given'),
 ])
 def test_a_bad_rotation_is_refused_with_the_value(request_fields, word):
     response = convert_rotation(**request_fields)
@@ -92,6 +93,21 @@ def test_both_representations_are_answered():
     assert (quat.x, quat.y, quat.z, quat.w) == pytest.approx((0.0, 0.0, half, half))
     assert (response.rpy.x, response.rpy.y, response.rpy.z) == (0.0, 0.0, 90.0)
     assert not response.gimbal_lock
+
+
+def test_angles_that_look_like_degrees_are_asked_about():
+    response = convert_rotation(rpy=(0.0, 0.0, 90.0))
+    assert (response.success, response.message) == (
+        True, 'the angles 0 0 90 are radians; did you mean degrees: true?')
+    assert convert_rotation(rpy=(0.0, 0.0, 90.0), degrees=True).message == ''
+
+
+@pytest.mark.parametrize(('values', 'message'), [
+    ([1, 2, 3, 0, 0, 90], 'the angles 0 0 90 are radians; did you mean degrees?'),
+    ([0] * 6 + [1, 1197, 3, 0, 0, 1], 'the position 1 1197 3 is in metres; did you mean mm?')])
+def test_poses_in_another_unit_are_asked_about(values, message):
+    response = convert_poses(values)
+    assert (response.success, response.message) == (True, message)
 
 
 def test_gimbal_lock_is_reported():
