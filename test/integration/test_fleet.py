@@ -122,7 +122,7 @@ def test_topics_that_become_one_are_reported_and_lose_nothing(start_bridge, file
         '-r', 'r1/joint_states:=/both', '-r', 'r2/joint_states:=/both').wait_until_started()
     wait_for_topics(tf, '/joint_states', '/both', '/r3/joint_states')
     bridge.wait_for_line(
-        'joint_states_topics has /both for "r1", "r2", so that it can move the joints of all '
+        'joint_states_topics has /both for "r1", "r2", so messages on it can be about all '
         'models')
     stamps = set()
 
