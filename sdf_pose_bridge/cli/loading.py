@@ -21,7 +21,7 @@ from sdf_pose_bridge.cli.printing import (
 )
 from sdf_pose_bridge.errors import SdfError, SdfWarning
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.names import hint_from_names, printable
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
@@ -218,5 +218,6 @@ def _kinds_from_text(text: str) -> tuple[Kind, ...]:
     try:
         return tuple(_SHOWN_BY_NAME[name] for name in text.split(','))
     except KeyError as error:
-        msg = f'"{error.args[0]}" is not a kind of element; known are {_KIND_NAMES}'
+        hint = hint_from_names(error.args[0], _SHOWN_BY_NAME)
+        msg = f'"{error.args[0]}" is not a kind of element; known are {_KIND_NAMES}{hint}'
         raise argparse.ArgumentTypeError(msg) from None

@@ -107,6 +107,14 @@ class _Parser(argparse.ArgumentParser):
         super().__init__(**arguments, allow_abbrev=False)
         self._negative_number_matcher = _NEGATIVE_NUMBER
 
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Parse arguments, all of which must be known: a command prints its own usage."""
+        found, unknown = super().parse_known_args(args, namespace)
+        if unknown:
+            hint = hint_from_names(unknown[0], self._option_string_actions)
+            self.error(f'unrecognized arguments: {" ".join(unknown)}{hint}')
+        return found, unknown
+
     def error(self, message: str) -> NoReturn:
         """Print the error with the nearest choice, and end the process."""
         wrong = _INVALID_CHOICE.search(message)

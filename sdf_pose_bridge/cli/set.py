@@ -27,10 +27,13 @@ from sdf_pose_bridge.cli.loading import (
 from sdf_pose_bridge.cli.printing import CommandError, discard_output
 from sdf_pose_bridge.geometry.formats import converted_poses, converted_rotations
 from sdf_pose_bridge.geometry.poses import Pose, pose_product
-from sdf_pose_bridge.names import printable, scoped_name
+from sdf_pose_bridge.names import listed, printable, scoped_name
 from sdf_pose_bridge.scene.comparison import names_of_moved
 from sdf_pose_bridge.scene.pose_setting import are_close, pose_change
 from sdf_pose_bridge.scene.scene import Scene
+
+_MOST_MOVED = 20
+"""Largest number of moved frames that are named."""
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -116,7 +119,7 @@ def run(options: argparse.Namespace) -> int:
         print(change.file.diff or (
             f'"{printable(own_name)}" has this pose already; the file stays as it is\n'), end='')
         if moved:
-            print(f'moved with it: {", ".join(map(printable, moved))}')
+            print(f'moved with it: {listed([*map(printable, moved)], _MOST_MOVED)}')
         sys.stdout.flush()
     except OSError as error:
         if options.dry_run:

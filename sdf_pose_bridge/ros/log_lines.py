@@ -87,9 +87,17 @@ def lines_about_scene(loaded: LoadedScene) -> list[str]:
     size = f'{line_about_frames(loaded)} with {transforms}, root frame "{tree.root_frame}"'
     lines = [
         f'{size} (read in {1e3 * loaded.seconds:.0f} ms)',
+        line_about_prefix(loaded.request.tf_options.frame_prefix),
         line_about_gazebo(loaded.gazebo_warning_count),
         line_about_detached_models(tree, loaded.scene)]
     return [line for line in lines if line]
+
+
+def line_about_prefix(prefix: str) -> str:
+    """Return a question about a prefix that runs into the names; '' if it does not."""
+    return '' if not prefix[-1:].isalnum() else (
+        f'frame ids begin with frame_prefix "{prefix}", as in "{prefix}base_link"; did you mean '
+        f'"{prefix}/"?')
 
 
 def lines_about_lost_frames(before: TfTree, after: TfTree) -> list[str]:

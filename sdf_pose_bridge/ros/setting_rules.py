@@ -15,7 +15,7 @@ from pathlib import Path
 from rclpy.exceptions import InvalidTopicNameException
 from rclpy.validate_topic_name import validate_topic_name
 
-from sdf_pose_bridge.names import printable, SEPARATOR, shortened
+from sdf_pose_bridge.names import hint_from_names, printable, SEPARATOR, shortened
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.anchors import AnchorModels, AnchorPatterns, anchors_from_text
 
@@ -84,7 +84,7 @@ def kinds_setting(values: Sequence[str]) -> frozenset[Kind] | None:
         raise refusal([], f'at least one of {known}')
     for value in values:
         if value not in PUBLISHED_KINDS:
-            raise refusal(value, f'made of {known}')
+            raise refusal(value, f'made of {known}{hint_from_names(value, PUBLISHED_KINDS)}')
     return frozenset(PUBLISHED_KINDS[value] for value in values)
 
 

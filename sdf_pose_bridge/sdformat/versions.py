@@ -121,8 +121,8 @@ def convert(root: XmlElement, version: Version, sources: Sources) -> None:
     _move_elements(root, version)
     if version < (1, 7):
         _convert_axes(root, version, sources)
-        for pose in root.iter('pose'):
-            if pose.get('frame') is not None and not is_foreign(pose):
+        for pose in root.xpath('.//pose[@frame][not(parent::waypoint)]'):
+            if not is_foreign(pose):
                 pose.set('relative_to', pose.attrib.pop('frame'))
     if version < (1, 8):
         # An <inertial> can only be relative to its link, which an empty attribute meant.

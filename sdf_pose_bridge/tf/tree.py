@@ -20,9 +20,9 @@ from sdf_pose_bridge.errors import (
 )
 from sdf_pose_bridge.geometry.chains import ends_from_pointers, Indices
 from sdf_pose_bridge.geometry.poses import canonical_relative_poses, PoseArray
-from sdf_pose_bridge.names import hint_from_names, WORLD_FRAME
+from sdf_pose_bridge.names import hint_from_names, quoted_names, WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
-from sdf_pose_bridge.scene.scene import ReadOnly, Scene
+from sdf_pose_bridge.scene.scene import Joint, ReadOnly, Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.anchors import AnchorModels, AnchorPatterns, detached_bodies
 from sdf_pose_bridge.tf.frame_ids import frame_ids_with_sensors, FrameNames, FrameNaming
@@ -178,11 +178,7 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
             optical_frames_of_cameras(frames, sensor_names, scene, naming))
     _check_frame_ids(frames, scene, options.root_frame, problems)
     problems.raise_errors()
-    for joint in tf_parents.loop_joints:
-        msg = (f'joint "{scene.names[joint.element]}" closes a loop between '
-               f'"{scene.names[joint.parent]}" and "{scene.names[joint.child]}"; TF is a tree, so '
-               'it moves nothing there')
-        problems.warning(msg, scene.place(joint.element))
+    _warn_of_loops(tf_parents, scene, problems)
     is_moving = options.use_joint_states or options.follows_models
     motion = JointMotion(
         scene, tf_parents, options.frame_names,
@@ -265,6 +261,21 @@ def elements_in_model(scene: Scene, name: str) -> NDArray[np.bool_]:
     is_inside: NDArray[np.bool_] = is_model[
         ends_from_pointers(np.where(is_model, -1, scene.parents))]
     return is_inside
+
+
+def _warn_of_loops(tf_parents: TfParents, scene: Scene, problems: Problems) -> None:
+    """Warn of the joints that TF cannot have, once for each top-level model."""
+    joints_of_models: dict[int, list[Joint]] = {}
+    for joint in tf_parents.loop_joints:
+        model = scene.top_level_element(joint.element)
+        joints_of_models.setdefault(model, []).append(joint)
+    for first, *others in joints_of_models.values():
+        others_too = '' if not others else (
+            '; like ' + quoted_names([scene.names[each.element] for each in others]))
+        msg = (f'joint "{scene.names[first.element]}" closes a loop between '
+               f'"{scene.names[first.parent]}" and "{scene.names[first.child]}"; TF is a tree, so '
+               f'it moves nothing there{others_too}')
+        problems.warning(msg, scene.place(first.element))
 
 
 def _check_frame_ids(

@@ -56,7 +56,9 @@ def test_frames_are_those_of_the_chosen_kinds(options):
 def test_an_unknown_kind_names_those_that_exist(options, capsys):
     with pytest.raises(SystemExit):
         options('--kinds', 'lnk', 'good.sdf')
-    assert '"lnk" is not a kind of element; known are model' in capsys.readouterr().err
+    error = capsys.readouterr().err
+    assert '"lnk" is not a kind of element; known are model' in error
+    assert error.endswith('; did you mean "link"?\n')
 
 
 def test_a_long_load_is_told_on_a_terminal(files):

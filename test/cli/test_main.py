@@ -49,7 +49,8 @@ def test_an_unknown_command_is_an_error_that_lists_the_known_ones(run_main):
 def test_an_option_is_not_abbreviated(run_main):
     done = run_main('check', 'good.sdf', '--stric')
     assert (done.returncode, done.stdout) == (2, '')
-    assert 'unrecognized arguments: --stric' in done.stderr
+    assert 'unrecognized arguments: --stric; did you mean "--strict"?' in done.stderr
+    assert done.stderr.startswith('usage: sdf_pose check ')
 
 
 LIMITED = """

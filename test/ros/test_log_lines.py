@@ -16,6 +16,7 @@ from sdf_pose_bridge.ros.log_lines import (
     line_about_detached_models,
     line_about_gazebo,
     line_about_joints_at_rest,
+    line_about_prefix,
     line_about_unreported,
     lines_about_lost_frames,
     lines_from_error,
@@ -43,6 +44,12 @@ def test_the_error_of_a_missing_include_names_the_parameter_that_leaves_it_out()
         load_text(world_file('<include><uri>https://a.org/1.0/b/models/c</uri></include>'))
     (line,) = lines_from_error(caught.value)
     assert line.endswith('; on_missing_include "skip" leaves it out')
+
+
+@pytest.mark.parametrize(('prefix', 'asks'), [
+    ('', False), ('robot1/', False), ('robot1_', False), ('robot1', True)])
+def test_a_prefix_that_runs_into_the_names_is_asked_about(prefix, asks):
+    assert line_about_prefix(prefix).endswith('; did you mean "robot1/"?') == asks
 
 
 def test_a_flood_of_errors_ends_with_its_size():

@@ -323,6 +323,14 @@ def test_of_several_worlds_the_first():
     assert 'night' in tree.warnings[0].message
 
 
+def test_loops_of_a_model_are_one_warning():
+    links = ''.join(f'<link name="{name}"/>' for name in 'abc')
+    joints = ''.join(
+        fixed_joint(f'j{number}', *ends) for number, ends in enumerate(('ab', 'bc', 'ca', 'ac')))
+    (warning,) = tree_of(model_file(links + joints)).warnings
+    assert warning.message.endswith('it moves nothing there; like "m::j3"')
+
+
 def test_a_loop_is_warned_of():
     text = model_file(
         '<link name="a"/><link name="b"/>' + fixed_joint('j', 'a', 'b')
