@@ -208,8 +208,9 @@ def xml_from_bytes(content: bytes, path: str) -> XmlFile:
     for instruction in chain(root.iter(etree.PI), root.itersiblings(etree.PI)):
         msg = f'the processing instruction <?{instruction.text}?> can only stand before <sdf>'
         raise FileReadError(msg, Place(path, instruction.sourceline or 0))
-    if b'xmlns' in text:
-        root = _parsed(_without_name_spaces(text), path)
+    divided = _with_borders_of_cdata(text)
+    if divided is not text or b'xmlns' in text:
+        root = _parsed(_without_name_spaces(divided), path)
     lines, warnings = _lines_and_warnings(root, text, path)
     hint = hint_about_template(path, content) if faults else ''
     warnings += [
@@ -224,7 +225,7 @@ def _parsed(text: bytes, path: str) -> XmlElement:
         huge_tree=False, remove_blank_text=True)
     root = None
     with contextlib.suppress(etree.XMLSyntaxError):
-        root = etree.fromstring(_with_comments_around_cdata(text), parser)
+        root = etree.fromstring(text, parser)
     errors = [entry for entry in parser.error_log if entry.type_name not in _IGNORED_ERRORS]
     if any(entry.type_name == 'ERR_NO_MEMORY' for entry in errors) and (
             max(map(len, text.split(b'<'))) <= _LONGEST_TEXT):
@@ -267,12 +268,13 @@ def _check_with_expat(text: bytes, path: str) -> None:
             raise FileReadError(msg, Place(path, error.lineno)) from error
 
 
-def _with_comments_around_cdata(text: bytes) -> bytes:
+def _with_borders_of_cdata(text: bytes) -> bytes:
     """Let CDATA be a text of its own, as for libsdformat; libxml2 would join it to others."""
     if b'<![CDATA[' not in text:
         return text
+    # Blank CDATA is the text of its element, so more than a comment ends it.
     return _OTHER_PART.sub(
-        lambda part: b'<!---->%b<!---->' % part[0] if part[0].startswith(b'<![') else part[0],
+        lambda part: b'<!---->%b<?end?>' % part[0] if part[0].startswith(b'<![') else part[0],
         text)
 
 
