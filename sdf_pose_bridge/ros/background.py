@@ -101,8 +101,8 @@ def result_from_executor(node: Node, function: Callable[[], _Result]) -> _Result
     """
     Have the executor of a node call a function, and wait for its result in another thread.
 
-    What the executor looks at while it waits, or in the services for parameters, is changed in
-    this way: subscriptions, services, timers and parameters. It does not look at publishers.
+    Subscriptions, services, timers and parameters are changed in this way, because the executor
+    uses them at any time. It does not use publishers.
 
     :raises Exception: any exception of the function.
     """

@@ -30,7 +30,7 @@ from sdf_pose_bridge.sdformat.grammar import Kind
 _OWN_FRAME = SEPARATOR + MODEL_FRAME
 _MOST_NAMES_COMPARED = 2000
 _MOST_STEPS = 300
-"""Largest number of steps of a reference that leads to an include, the limit of nesting."""
+"""Largest number of names in a reference into a missing include, like the limit of nesting."""
 
 IS_FRAME_KIND = np.array([kind.is_frame for kind in Kind])
 """For each kind whether references can name elements of it."""

@@ -113,8 +113,8 @@ class Elements:
     includes: Mapping[int, Place] = field(default_factory=dict)
     """The place of the ``<include>`` of each included element."""
     missing_includes: Mapping[int, Mapping[str, str]] = field(default_factory=dict)
-    """Of elements with includes that were not found: URIs by the names of the missing models. An
-    empty name is for any unknown name, as of an include without a name, or of a merge."""
+    """For each element with includes that were not found, their URIs by the names of the models.
+    An empty name stands for any name: the include has no name, or is merged."""
     _known_paths: dict[int, str] = field(default_factory=dict, init=False, repr=False)
     """Paths of some elements, which :meth:`place` has made."""
 

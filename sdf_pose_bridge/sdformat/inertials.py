@@ -145,7 +145,7 @@ def warn_of_inertial(
 def _automatic_inertial(
     inertial: XmlElement, link: XmlElement, sources: Sources,
 ) -> AutomaticInertial | None:
-    """Return the masses for an automatic inertial; None if not each mass is known."""
+    """Return the masses for an automatic inertial; None if one of them is not known."""
     outer = link.getparent()
     if outer is not None and outer.tag == 'actor':
         return None  # libsdformat computes none in an actor

@@ -59,7 +59,7 @@ class Origin(NamedTuple):
     is_checked: bool = False
     """Whether the values in it were checked before it was copied to its place."""
     next_attributes: Mapping[str, str] = MappingProxyType({})
-    """Attributes of a pose that are for its next text only, as libsdformat has read this one."""
+    """Attributes that apply to the next text of a pose: libsdformat has read the current one."""
     placement_frame: str = ''
     """For the frame that replaces a merged model's frame: the frame that the include places."""
     missing: Mapping[str, str] = MappingProxyType({})

@@ -75,17 +75,17 @@ _LAST_LINE = 65_535
 
 _NO_TAG = (
     rb'(?:!--.*?-->|!\[CDATA\[.*?\]\]>|![A-Z](?:[^"\'>]|"[^"]*"|\'[^\']*\')*>|\?.*?\?>)')
-"""A part of a file that may contain a text like a tag, without its first character."""
+"""A comment, CDATA, declaration or instruction, without the first character."""
 
 START_TAG = re.compile(
     rb'<(?:([^/!?][^"\'>]*(?:"[^"]*"[^"\'>]*|\'[^\']*\'[^"\'>]*)*)>|' + _NO_TAG + rb')', re.DOTALL)
-"""A start tag, its inside as group 1, or a part of a file that may contain a similar text."""
+"""A start tag with its inside as group 1, or a comment or the like, as tags in it are none."""
 
 _OTHER_PART = re.compile(b'<' + _NO_TAG, re.DOTALL)
 
 _NOT_TAGS_AND_BREAKS = bytes(set(range(256)) - set(b'<>\t\n'))
 _BREAK_IN_TAG = re.compile(rb'<[^/!?<>][^<>\t\n]*[\t\n]')
-"""The beginning of a start tag over several lines, or with a tab, if no value before holds ">"."""
+"""The beginning of a start tag with a line break or tab, if no value before it contains ">"."""
 
 _NAME_SPACE = re.compile(rb'"[^"]*"|\'[^\']*\'|(?<=\s)(xmlns)(?=[\s:=])')
 """A declaration of a name space in a start tag, as group 1, or a value that may look like one."""

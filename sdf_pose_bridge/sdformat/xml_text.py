@@ -162,7 +162,7 @@ class _Repairer:
                     return None
                 self._is_after_root |= not self._open
             self._line += decoded.count('\n', begin, position)
-        # There is no element, or one behind the outermost element has no end.
+        # None if there is no element, or if one after the outermost element has no end.
         return None if self._is_after_root is bool(self._open) else (
             ''.join(parts).encode(errors='replace'),
             sorted((line, fault) for fault, line in self._faults.items()))

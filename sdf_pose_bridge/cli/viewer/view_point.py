@@ -19,7 +19,7 @@ FIELD_OF_VIEW_RAD = 0.8
 """The vertical field of view of the camera."""
 
 DIRECTIONS: Mapping[str, Triple] = {
-    # Not along z, where the picture could be turned in any way.
+    # Not exactly along z, because "up" in the picture would be undefined.
     'top': (-1e-3, 0.0, 1.0), 'front': (1.0, 0.0, 0.0), 'side': (0.0, -1.0, 0.0)}
 """Direction from the middle of the picture to the camera for each view; +x is the front."""
 

@@ -56,7 +56,7 @@ _ACTIONS = ('add', 'modify', 'remove', 'replace')
 _POSE_FORMAT_ATTRIBUTES = frozenset({'degrees', 'rotation_format'})
 _PARTS = {
     path.partition('/')[0] for part in PARTS_OF_MODEL.values() for path, _ in part.references}
-"""Children that are in the file of their parent element: those with references."""
+"""Child elements with references, which are defined in the file of their parent element."""
 _MOST_IDS_COMPARED = 2000
 _MOST_ELEMENTS_SEARCHED = 10_000
 _LONGEST_ID_COMPARED = 200

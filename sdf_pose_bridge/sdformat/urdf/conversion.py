@@ -105,7 +105,7 @@ class _Conversion:
         self._inertials = lumped_inertials(robot, self._bases, skips_massless=for_ros)
         self._left_out = self._links_left_out()
         if for_ros:
-            # Gazebo's view of the robot is for warnings alone.
+            # Links are lumped only to find the warnings about Gazebo.
             self._bases = {link.name: Base(link, Pose(), [link]) for link in robot.links}
             self._inertials = {link.name: link.inertial for link in robot.links}
             self._leave_out_trees()

@@ -62,7 +62,7 @@ def lumped_inertials(
     """
     Add the inertials of lumped links to those of their parents.
 
-    :param skips_massless: whether two without a mass have no sum, instead of one that is NaN.
+    :param skips_massless: whether two inertials without a mass give None instead of NaN.
     """
     inertials = {link.name: link.inertial for link in robot.links}
     for link in reversed(robot.links):
