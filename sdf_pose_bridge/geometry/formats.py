@@ -44,8 +44,7 @@ LARGEST_ANGLE_RAD = 2.5 * math.pi
 FAR_M = 100.0
 """A position that is at least this far away is probably in millimetres."""
 
-METRES, MILLIMETRES = 1.0, 1000.0
-RADIANS, DEGREES = math.pi, 180.0
+METRES, MILLIMETRES, RADIANS, DEGREES = 1.0, 1000.0, math.pi, 180.0
 """A metre in units of lengths, and a half turn in units of angles."""
 
 _ORDER_OR_UNIT = re.compile('[wxyz]{3,4}|rpy|ypr|row|col|deg|rad|mm')
@@ -228,8 +227,8 @@ def format_from_name(name: str, formats: Mapping[str, Format], what: str) -> For
     for each in formats.values():
         if name == each.name or name in each.synonyms:
             return each
-    msg = (f'there is no {what} format {name!r}; known are {", ".join(formats)}'
-           f'{_hint(str(name), formats)}')
+    hint = _hint(str(name), formats)
+    msg = f'there is no {what} format {name!r}; known are {", ".join(formats)}{hint}'
     raise PoseFormatError(msg)
 
 
@@ -273,12 +272,13 @@ def _converted(
         result = target.rows_from_common(common)
     if source.sequence is not None and source.sequence is target.sequence:
         # Rounding must not change angles that are already canonical.
-        angles = rows[:, source.columns]
-        are_canonical = source.sequence.are_canonical(angles.T, source.half_turn)
-        angles = angles[are_canonical]
-        if target.half_turn != source.half_turn:
-            angles = angles * target.half_turn / source.half_turn
-        result[np.ix_(are_canonical, target.columns)] = angles
+        angles = [rows[:, column] for column in source.columns]
+        are_canonical = source.sequence.are_canonical(angles, source.half_turn)
+        for column, angle in zip(target.columns, angles, strict=True):
+            kept = angle[are_canonical]
+            result[are_canonical, column] = (
+                kept if target.half_turn == source.half_turn
+                else kept * target.half_turn / source.half_turn)
     result += 0.0  # no negative zeros
     is_finite = np.isfinite(result)
     if not is_finite.all():
@@ -350,8 +350,8 @@ def _registry(*formats: Format) -> Mapping[str, Format]:
 _RPY = Format('rpy', 'roll pitch yaw in {angle}', ZYX, (2, 1, 0), RADIANS)
 _YPR = Format('ypr', 'yaw pitch roll in {angle}', ZYX, (0, 1, 2), RADIANS)
 _XYZW = Format('quaternion', 'quaternion x y z w of any norm but 0', _QUATERNION, (0, 1, 2, 3))
-_WXYZ = Format(
-    'quaternion_wxyz', 'quaternion w x y z of any norm but 0', _QUATERNION, (1, 2, 3, 0))
+_WXYZ = _XYZW._replace(
+    name='quaternion_wxyz', text='quaternion w x y z of any norm but 0', columns=(1, 2, 3, 0))
 _VECTOR = Format(
     'rotation_vector', 'rotation vector (axis times angle) in {angle}', _ROTATION_VECTOR,
     (0, 1, 2), RADIANS)
@@ -363,9 +363,7 @@ ROTATION_FORMATS = _registry(
     _YPR._replace(name='ypr_degrees', half_turn=DEGREES, synonyms=('ypr_deg',)),
     _XYZW._replace(synonyms=('quaternion_xyzw', 'quat', 'quat_xyzw')),
     _WXYZ._replace(synonyms=('quat_wxyz',)),
-    Format(
-        'matrix', '3 x 3 matrix row after row', _MATRIX, tuple(range(9)),
-        synonyms=('rotation_matrix',)),
+    Format('matrix', '3 x 3 matrix row after row', _MATRIX, tuple(range(9))),
     _VECTOR._replace(synonyms=('rotvec', 'axis_angle')),
     _VECTOR._replace(
         name='rotation_vector_degrees', half_turn=DEGREES, synonyms=('rotvec_degrees',)),
