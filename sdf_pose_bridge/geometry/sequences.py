@@ -50,9 +50,10 @@ class AngleSequence(NamedTuple):
         """
         if self is ZYX:  # as the others, but in half of the time
             return quaternion_from_rpy(angles_rad[:, ::-1])
-        rpy = angles_rad[:, ::-1].copy()
+        rpy: Floats = angles_rad[:, ::-1].copy()
         rpy[:, 1] = self._pitch(rpy[:, 1], math.pi)
-        return canonical_quaternion(quaternion_from_rpy(rpy) @ self.matrix.T)
+        turned: Floats = quaternion_from_rpy(rpy) @ self.matrix.T
+        return canonical_quaternion(turned)
 
     def numbers_from_quaternions(self, quats_xyzw: Floats) -> Floats:
         """
