@@ -257,6 +257,21 @@ def test_other_frames_continue_with_the_positions_and_one_nanosecond_later(arm):
         (FIRST, {'slide', 'finger'}), (FIRST + 1, {'slide'})]
 
 
+def test_a_look_up_sees_the_messages_that_came_before_it(arm):
+    goes_on, seen = threading.Event(), []
+    arm.states._calls.append(lambda: goes_on.wait(20.0))
+    arm.states._wake()
+    arm.send(FIRST, {'turn': 0.5})
+    arm.spin(0.2)
+    future = arm.states.current_lookup()
+    future.add_done_callback(lambda _: seen.extend(arm.frames.positions.values))
+    assert not future.done()
+    goes_on.set()
+    arm.wait(lambda: seen)
+    assert 0.5 in seen
+    assert future.result() is LOOKUP
+
+
 def test_nothing_of_the_frames_before_is_published_once_others_are_followed(arm):
     goes_on, published, before = threading.Event(), [], arm.frames
 

@@ -4,6 +4,8 @@
 
 import array
 import math
+import threading
+import time
 
 import pytest
 
@@ -18,6 +20,7 @@ from sdf_texts import joint, model_file, posed, world_file
 
 from sdf_pose_bridge import load
 from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.ros import services
 from sdf_pose_bridge.ros.given_parameters import settings_from_node
 from sdf_pose_bridge.ros.services import (
     answer_to_convert_poses,
@@ -177,6 +180,38 @@ def make_path(tmp_path):
     path = tmp_path / 'cell.sdf'
     path.write_text(ARM, encoding='utf-8')
     return path
+
+
+def test_large_requests_wait_in_the_middleware_until_it_is_their_turn(
+        make_node, make_executor, monkeypatch):
+    goes_on, taken = threading.Event(), []
+    monkeypatch.setattr(services, 'answer_to_convert_poses', lambda *_: goes_on.wait(20.0))
+    node, caller = make_node('bridge'), make_node('caller')
+    executor = make_executor(node, caller)
+    services.add_services(node, None)
+    service = next(each for each in node.services if each.srv_name.endswith('/convert_poses'))
+    convert = service.callback
+
+    async def counted(request, response):
+        taken.append(request)
+        return await convert(request, response)
+
+    service.callback = counted
+    client = caller.create_client(ConvertPoses, '/bridge/convert_poses')
+    assert client.wait_for_service(20.0)
+    request = ConvertPoses.Request(values=array.array('d', bytes(8 * services.FEW_NUMBERS + 8)))
+    futures = [client.call_async(request) for _ in range(3)]
+
+    def spin_until(condition, seconds):
+        deadline = time.monotonic() + seconds
+        while not condition() and time.monotonic() < deadline:
+            executor.spin_once(timeout_sec=0.01)
+
+    spin_until(lambda: len(taken) > 1, 0.5)
+    assert len(taken) == 1
+    goes_on.set()
+    spin_until(lambda: all(future.done() for future in futures), 20.0)
+    assert all(future.result().success for future in futures)
 
 
 def call(_request, function, *arguments):
