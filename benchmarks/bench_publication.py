@@ -4,13 +4,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Coroutine, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 import contextlib
 import os
 from pathlib import Path
 import random
 import tempfile
-from typing import Any, TYPE_CHECKING
+from typing import TYPE_CHECKING
 
 from benchmarks.harness import AtMostTimes, benchmark, DOMAINS, Function, TimesAsFast
 import sdf_pose_bridge
@@ -83,12 +83,6 @@ def latched_publisher(node: Node, message_type: type, name: str, depth: int) -> 
     from rclpy.qos import DurabilityPolicy, QoSProfile
     return node.create_publisher(
         message_type, name, QoSProfile(depth=depth, durability=DurabilityPolicy.TRANSIENT_LOCAL))
-
-
-def run(node: Node, coroutine: Coroutine[Any, Any, object]) -> None:
-    """Run a coroutine to its end, as the executor of the node does between other callbacks."""
-    executor = node.executor
-    executor.spin_until_future_complete(executor.create_task(coroutine))
 
 
 def transforms_of_tree(tree: TfTree) -> Iterator[tuple[str, str, Pose]]:
@@ -214,13 +208,14 @@ def transforms_one_by_one() -> Iterator[tuple[Function, Function | None]]:
     with node() as ros:
         bench = Bench(ros)
         frames = bench.frames(bench.tree)
-        run(ros, frames.publish_topics())
+        frames.open_topics()
+        frames.publish_topics()
         publisher = latched_publisher(ros, TransformStamped, '/one_by_one', FRAMES)
 
         def send_one_by_one() -> None:
             for message in transform_messages(ros, transforms_of_tree(bench.tree)):
                 publisher.publish(message)
-        yield lambda: run(ros, frames.publish_fixed_again()), send_one_by_one
+        yield frames.publish_fixed_again, send_one_by_one
 
 
 @benchmark(
@@ -239,8 +234,11 @@ def topics_of_poses() -> Iterator[tuple[Function, Function | None]]:
 
         def ours() -> None:
             topics = pose_topics_from_patterns(tree.frame_ids, ['*'], '/benchmark').names
-            run(ros, PublishedFrames(publishers, tree, None, topics).publish_topics())
-            run(ros, PublishedFrames(publishers, tree, None, {}).publish_topics())
+            for names in (topics, {}):
+                frames = PublishedFrames(publishers, tree, None, names)
+                frames.open_topics()
+                frames.destroy_other_publishers()
+                frames.publish_topics()
 
         def counterpart() -> None:
             stamp = ros.get_clock().now().to_msg()

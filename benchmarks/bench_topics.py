@@ -20,7 +20,6 @@ import time
 
 from benchmarks.bench_publication import latched_publisher
 from benchmarks.bench_publication import node
-from benchmarks.bench_publication import run
 from benchmarks.bench_publication import scene_of
 from geometry_msgs.msg import PoseStamped
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
@@ -34,7 +33,9 @@ def memory_kb():
 
 def publish_as_the_bridge(ros, tree, patterns=('?*',)):
     topics = pose_topics_from_patterns(tree.frame_ids, patterns, '/benchmark').names
-    run(ros, PublishedFrames(bridge, tree, None, topics).publish_topics())
+    frames = PublishedFrames(bridge, tree, None, topics)
+    frames.open_topics()
+    frames.publish_topics()
 
 def publish_as_rclpy(ros, tree):
     stamp = ros.get_clock().now().to_msg()
