@@ -186,6 +186,18 @@ def format_in_given_units(source: Format, options: argparse.Namespace) -> Format
         half_turn=options.half_turn or source.half_turn, metre=options.metre or source.metre)
 
 
+def number_from_text(text: str) -> float:
+    """Read a number; raise a PoseFormatError for another text."""
+    try:
+        if '_' in text or not text.isascii():
+            # float() accepts 1_000 and digits of all scripts; other readers of poses do not.
+            raise ValueError
+        return float(text)
+    except ValueError:
+        msg = f'{shortened(text)!r} is not a number'
+        raise PoseFormatError(msg) from None
+
+
 def numbers_from_text(text: str, source: Format) -> list[float]:
     """
     Read the numbers of a pose or a rotation.
@@ -194,16 +206,7 @@ def numbers_from_text(text: str, source: Format) -> list[float]:
     :return: the numbers.
     :raises PoseFormatError: if they are not numbers, or not as many as in the format.
     """
-    values = []
-    for word in text.split():
-        try:
-            if '_' in word or not word.isascii():
-                # float() accepts 1_000 and digits of all scripts; other readers of poses do not.
-                raise ValueError
-            values.append(float(word))
-        except ValueError:
-            msg = f'{shortened(word)!r} is not a number'
-            raise PoseFormatError(msg) from None
+    values = list(map(number_from_text, text.split()))
     if len(values) != source.row_length:
         msg = (
             f'{source.name} has {source.row_length} numbers ({source.meaning}), but {len(values)}'

@@ -32,6 +32,7 @@ from sdf_pose_bridge.cli.loading import (
 from sdf_pose_bridge.cli.printing import (
     add_output_argument,
     add_unit_arguments,
+    argument_type,
     CommandError,
     print_problems,
     Units,
@@ -75,9 +76,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add_file_arguments(parser, takes_many=False)
     add_output_argument(parser, _FORMATS, 'a page for .html, or a picture for .png')
     add_frame_arguments(parser)
-    add_unit_arguments(parser)
+    add_unit_arguments(parser, 'degrees')
     parser.add_argument(
-        '--port', type=int, default=_PORT, metavar='N',
+        '--port', default=_PORT, metavar='N',
+        type=argument_type(int, lambda port: 0 <= port < 2 ** 16, 'is not a port, 0 to 65535'),
         help=f'the port of the page, or the next free one; by default {_PORT}')
     parser.add_argument(
         '--edit', action='store_true',

@@ -90,7 +90,7 @@ def _change_of_own_pose(
     scene: Scene, element: int, asked: Pose, measure: Measure, load: Load, *, all_instances: bool,
 ) -> PoseChange:
     _check_kind(scene, element)
-    path = _place_of_pose(scene, element)[0]
+    path = place_of_pose(scene, element)[0]
     cache = Path(os.path.realpath(resource_finder().fuel_cache))
     if cache in Path(os.path.realpath(path)).parents:
         msg = 'the file is in the cache of Gazebo Fuel; copy the model and include the copy'
@@ -100,7 +100,7 @@ def _change_of_own_pose(
     if marked.names != scene.names or not np.array_equal(marked.poses, scene.poses):
         msg = 'the file has changed since it was read'
         raise PoseNotSetError(msg, Place(path))
-    _, line, is_written = place = _place_of_pose(marked, element)
+    _, line, is_written = place = place_of_pose(marked, element)
     target = text.element_at_line(line)
     at = Place(path, text.line(target))
     if not all_instances:
@@ -147,7 +147,7 @@ def _check_kind(scene: Scene, element: int) -> None:
         raise PoseNotSetError(msg, scene.place(element))
 
 
-def _place_of_pose(scene: Scene, element: int) -> tuple[str, int, bool]:
+def place_of_pose(scene: Scene, element: int) -> tuple[str, int, bool]:
     """Return file and line of the pose, or else of the element; and whether it is a pose."""
     path, line = scene.place(element)[:2]
     include = scene.includes.get(element)
@@ -164,7 +164,7 @@ def _check_instances(
     others = [
         scene.names[other] for other in range(len(scene.names))
         if other != element and scene.parents[other] >= 0
-        and _place_of_pose(scene, other) == place]
+        and place_of_pose(scene, other) == place]
     if others:
         msg = (f'the same pose in the file also places {quoted_names(others)}, '
                'which would move too')

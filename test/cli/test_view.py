@@ -120,6 +120,13 @@ def test_page_opens_in_the_browser(run_main, monkeypatch):
     assert urlsplit(opened[1]).port != port
 
 
+@pytest.mark.parametrize('port', ['80000', '-1', 'http'])
+def test_port_that_is_none(files, run_main, port):
+    done = run_main('view', 'good.sdf', f'--port={port}')
+    assert done.returncode == 2
+    assert done.stderr.endswith(f'argument --port: "{port}" is not a port, 0 to 65535\n')
+
+
 def test_libraries_are_imported_only_by_the_command(files):
     program = ('import sys; from sdf_pose_bridge.cli.main import main\n'
                'main(["tree", "good.sdf"])\n'

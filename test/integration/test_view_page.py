@@ -124,6 +124,9 @@ IN_WINDOW = """(box => box && box.width > 0 && box.left >= 0 && box.top >= 0
   && box.right <= innerWidth && box.bottom <= innerHeight)"""
 
 
+VISIBLE_ROWS = f'{ROWS}.some(row => row.checkVisibility())'
+
+
 def is_in_window(element):
     """Return a condition: the element is wholly in the window, and nothing is above it."""
     return f"""(element => {IN_WINDOW}(element?.getBoundingClientRect())
@@ -149,6 +152,68 @@ def test_selected_frame_and_errors_are_in_view(sized_page, shown):
     shown.file.write_text(TEXT.replace('<parent>base', '<parent>bass'))
     sized_page.wait_for("document.querySelector('.strip .errors')")
     sized_page.wait_for(is_in_window("document.querySelector('.strip .errors')"))
+
+
+FIELDS = [f'{label} [{unit}]' for label, unit in zip(
+    ('x', 'y', 'z', 'roll', 'pitch', 'yaw'), 3 * ['m'] + 3 * ['deg'], strict=True)]
+
+
+def test_fields_are_in_view_beside_the_tree_where_a_frame_is_clicked(sized_page, shown):
+    select(sized_page, 'slide')
+    for label in FIELDS:
+        sized_page.wait_for(is_in_window(control(label)))
+    sized_page.wait_for(is_in_window("document.querySelector('.rows .selected')"))
+    line = 1 + TEXT[:TEXT.index('"slide"')].count('\n')
+    sized_page.wait_for(f"""document.querySelector('.strip').innerText.includes(
+      'in the file {shown.file}:{line} relative_to="arm": no pose')""")
+
+
+def type_over(page, element, text):
+    """Type keys into an input element instead of its text."""
+    page.wait_for(f'(input => input && !input.disabled)({element})')
+    page.run(f'(input => {{ input.focus(); input.select(); }})({element})')
+    for key in text:
+        page.call('Input.dispatchKeyEvent', type='keyDown', text=key)
+        page.call('Input.dispatchKeyEvent', type='keyUp')
+
+
+@pytest.mark.parametrize('number', ['-0.25', '6.1e-05'])
+def test_typed_number_is_the_one_that_is_written(page, shown, number):
+    type_over(page, control('x [m]'), number)
+    page.wait_for(f"document.querySelector('.difference')?.rows[1].cells[2].innerText "
+                  f"=== '{float(number):.4f}'")
+    assert page.run(f'{control("x [m]")}.value') == number
+    page.run(f"{strip_label('write to file')}.click()")
+    line = 1 + TEXT[:TEXT.index('1 0 0 0 0 0')].count('\n')
+    page.wait_for(f"""document.querySelector('.strip').innerText.includes(
+      'written to cell.sdf:{line}')""")
+    assert load(shown.file).pose(HOSTILE)[:3] == pytest.approx((float(number), 0, 0), abs=1e-9)
+    page.run(f"{strip_label('undo the last write')}.click()")
+    page.wait_for(f"!{strip_label('undo the last write')}")
+
+
+@pytest.mark.parametrize('text', ['1/2', '1,234.5'])
+def test_typed_text_that_is_no_number_is_not_written(page, text):
+    type_over(page, control('y [m]'), text)
+    page.wait_for(f"""document.querySelector('.strip .errors')?.innerText
+      === "'{text}' is not a number" """)
+    page.wait_for(is_in_window(strip_label('cancel')))
+    assert page.run(f"{strip_label('write to file')}") is None
+    page.run(f"{strip_label('cancel')}.click()")
+    page.wait_for(f"{control('y [m]')}.value === '0.0000'")
+
+
+def test_dark_page_of_a_dark_system_and_a_tab_whose_program_has_ended(tmp_path):
+    (tmp_path / 'cell.sdf').write_text(TEXT)
+    with browser(tmp_path / 'browser') as page:
+        page.size(700, 600)
+        page.call('Emulation.setEmulatedMedia', features=[
+            {'name': 'prefers-color-scheme', 'value': 'dark'}])
+        with view_of(tmp_path) as address:
+            page.open(address)
+            page.wait_for("document.documentElement?.dataset.mantineColorScheme === 'dark'")
+        page.wait_for("document.querySelector('.strip')?.innerText.includes('view has ended')")
+        page.wait_for(is_in_window("document.querySelector('.strip')"))
 
 
 def test_each_tab_has_its_own_selection(page, shown, tmp_path):
@@ -432,19 +497,22 @@ def test_labels_are_whole_in_a_panel_that_leaves_room_to_the_scene(shown, tmp_pa
 
 
 @pytest.mark.usefixtures('page')
-def test_frame_is_moved_in_a_narrow_window_where_the_panel_is_folded(shown, tmp_path):
+@pytest.mark.parametrize(('width', 'most'), [(700, 690), (500, 500)])
+def test_frame_is_moved_in_a_narrow_window_where_the_panel_is_folded(
+        shown, tmp_path, width, most):
     with browser(tmp_path / 'browser') as narrow:
-        narrow.size(700, 600)
+        narrow.size(width, 600)
         narrow.open(shown.address)
         narrow.wait_for(
-            "(width => width > 600 && width < 700)(document.querySelector('canvas')?.clientWidth)")
+            f"document.querySelector('canvas')?.clientWidth <= {most} && !{VISIBLE_ROWS}"
+            " && document.body.innerText.includes('cell.sdf')")
         wait_for_name_at(narrow, *point_on_screen(narrow, (1.0, 0.0, 0.0)), HOSTILE)
         narrow.mouse(point_on_screen(narrow, (1.0, 0.0, 0.05)))
         drag(narrow)
         narrow.run(f"{strip_label('cancel')}.click()")
         narrow.wait_for(f"!{strip_label('cancel')}")
         assert narrow.run(f'{LABELS}.map(label => label.innerText)') == [HOSTILE]
-        assert narrow.run(f'{ROWS}.length') == 0
+        assert narrow.run(VISIBLE_ROWS) is False
 
 
 def test_page_asks_for_nothing_elsewhere(page, shown):

@@ -183,18 +183,47 @@ _SCRIPT = """<script>(() => {
     // A body is looked for when the pointer rests, as that takes long in a large scene.
     if (!text) resting = setTimeout(() => show(event, nameOfBodyAt(event, box)), 100);
   });
+  // It is typed into a control that is not seen, with a number, as the same text is no change.
+  const asked = () => document.querySelector('div:has(> .asked) + * input');
+  const tell = ask => {
+    Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, 'value').set.call(
+      asked(), `${performance.now()} ${ask}`);
+    asked().dispatchEvent(new Event('input', {bubbles: true}));
+  };
+  let hasEnded = false, isToBeDark = false, isToBeFolded = innerWidth < 576;
+  // viser connects in a worker, which tells the page.
+  const ViserWorker = window.Worker;
+  window.Worker = class extends ViserWorker {
+    constructor(...given) {
+      super(...given);
+      this.addEventListener('message', ({data: {type}}) => {
+        if (type === 'connected') isToBeDark = matchMedia('(prefers-color-scheme: dark)').matches;
+        if (type === 'connected' || type === 'closed') { hasEnded = type === 'closed'; update(); }
+      });
+    }
+  };
   const strip = document.createElement('div');
   strip.className = 'strip';
-  let shownInStrip = '';
-  new MutationObserver(() => {
-    const text = given('errors', '') + given('strip', '');
+  let shownInStrip = '', selected;
+  const update = () => {
+    if (isToBeDark && asked()) { isToBeDark = false; tell('dark'); }
+    // In a very narrow window the panel is at the bottom, where viser opens it.
+    const handle = document.querySelector('[style*="bottom: 0"] [style*="pointer"]');
+    if (handle && isToBeFolded) { isToBeFolded = false; handle.click(); }
+    const row = document.querySelector('.rows .selected'), rows = row?.closest('.rows');
+    if (row && row.dataset.ask !== selected) {
+      rows.scrollTop = row.offsetTop - rows.offsetTop - 0.5 * rows.clientHeight;
+    }
+    selected = row?.dataset.ask;
+    const text = hasEnded
+      ? '<b>sdf_pose view has ended; start it again and open the page that it names</b>'
+      : given('errors', '') + given('strip', '');
     if (text === shownInStrip) return;
     shownInStrip = strip.innerHTML = text;
     strip.style.maxWidth = `${document.querySelector('canvas').clientWidth - 16}px`;
     document.body.append(strip);
-    const row = document.querySelector('.rows .selected'), rows = row?.parentElement;
-    if (row) rows.scrollTop = row.offsetTop - rows.offsetTop - 0.5 * rows.clientHeight;
-  }).observe(document, {childList: true, subtree: true});
+  };
+  new MutationObserver(update).observe(document, {childList: true, subtree: true});
   // Behind the controls and before viser, whose camera also turns by the arrow keys.
   addEventListener('DOMContentLoaded', () => document.body.addEventListener('keydown', event => {
     if (event.target.closest('[role=slider], input, textarea')) event.stopPropagation();
@@ -209,12 +238,7 @@ _SCRIPT = """<script>(() => {
       target.textContent = 'copied';
       setTimeout(() => { target.textContent = 'copy'; }, 1000);
     });
-    if (!ask) return;
-    // It is typed into a control that is not seen, with a number, as the same text is no change.
-    const input = document.querySelector('div:has(> .asked) + * input');
-    Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, 'value').set.call(
-      input, `${performance.now()} ${ask}`);
-    input.dispatchEvent(new Event('input', {bubbles: true}));
+    if (ask) tell(ask);
   });
 })();</script>"""
 

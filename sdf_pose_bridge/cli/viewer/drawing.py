@@ -48,7 +48,7 @@ HIDDEN_AT_FIRST = frozenset(('collisions', 'all names', 'all lines to parents'))
 _WXYZ = [6, 3, 4, 5]
 _LINE_COLOR = (255, 146, 43)
 _MEASURED_COLOR = (230, 73, 128)
-_GRID_COLOR, _GRID_SECTION_COLOR = (173, 178, 184), (134, 141, 149)
+_GRID_COLOR = (134, 141, 149)
 _COLLISION_RGBA = (0.05, 0.62, 0.55, 1.0)
 _LIGHT_FROM_BELOW = (120, 124, 130)
 _LIGHTS = ((1.9, (0.35, -0.6, 1.0)), (0.8, (-0.6, 0.8, 0.4)))
@@ -201,7 +201,8 @@ class Drawing:
             for element in islice(missing, MOST_NAMES)]
         named = visible.frames[:0 if 'all names' in visible.hidden else MOST_NAMES].tolist()
         return json.dumps(labels + [
-            (_last_part(tree.frame_ids[index]), index == frame, *tree.poses[index, :3])
+            (printable(shortened(shown.short_names[index])), index == frame,
+             *tree.poses[index, :3])
             for index in dict.fromkeys((*named, frame)) if index >= 0])
 
     def _add_surroundings(self) -> None:
@@ -222,10 +223,10 @@ class Drawing:
         # A little above the floors of many files.
         height_m = visible.ground_m + 0.001 * visible.view_m
         nodes.add_grid(
-            f'{name}/grid', width_m, width_m, cell_size=spacing_m, section_size=5.0 * spacing_m,
-            cell_color=_GRID_COLOR, section_color=_GRID_SECTION_COLOR, shadow_opacity=0.0,
-            fade_distance=4.0 * visible.view_m, position=(*middle, height_m))
-        to_camera = 0.3 * (visible.home.position - visible.home.look_at)[:2]
+            f'{name}/grid', width_m, width_m, cell_size=spacing_m, section_size=spacing_m,
+            section_color=_GRID_COLOR, shadow_opacity=0.0, fade_distance=4.0 * visible.view_m,
+            position=(*middle, height_m))
+        to_camera = 0.2 * (visible.home.position - visible.home.look_at)[:2]
         nodes.add_label(
             f'{name}/grid spacing', f'grid {spacing_m:g} m', font_screen_scale=0.8,
             position=(*(middle + spacing_m * np.round(to_camera / spacing_m)), height_m))

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Sequence
 import html
+from pathlib import Path
 import shlex
 from xml.sax.saxutils import quoteattr
 
@@ -16,6 +17,8 @@ from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.geometry.formats import converted_poses
 from sdf_pose_bridge.geometry.poses import Pose, relative_pose
 from sdf_pose_bridge.names import printable, quoted_names, SEPARATOR
+from sdf_pose_bridge.scene.pose_setting import place_of_pose
+from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.include.merge import is_name_of_proxy
 from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
@@ -62,14 +65,14 @@ def html_of_frame(shown: ShownScene, frame: int, reference: int, units: Units) -
         f'in <b>{escaped(ids[other])}</b><br>{"<br>".join(_place(shown, other, frame, units))}'
         for other in dict.fromkeys((reference, ROOT_IS_PARENT, int(tree.parents[frame])))
         if other not in (NO_PARENT, frame)]
-    pose = shown.pose_in(reference, frame)
+    pose, other = shown.pose_in(reference, frame), shown.element_of(reference)
     # Smaller differences are rounding errors. Adding zero removes negative zeros.
     rpy, quat, franka = (
         (converted_poses([pose], 'sdf_quat_xyzw', name)[0].round(12) + 0.0).tolist()
         for name in ('sdf_rpy', 'sdf_quat_xyzw', 'franka_matrix'))
     arguments = zip(('x', 'y', 'z', 'qx', 'qy', 'qz', 'qw'), quat, strict=True)
     copied = {
-        'SDF': f'<pose{_relative_to(shown, frame, reference)}>{_text(rpy)}</pose>',
+        'SDF': f'<pose{_relative_to(scene, element, other)}>{_text(rpy)}</pose>',
         'static_transform_publisher': shlex.join([
             *(word for name, value in arguments for word in (f'--{name}', repr(value))),
             '--frame-id', ids[reference], '--child-frame-id', ids[frame]]),
@@ -89,25 +92,42 @@ def _text(values: Sequence[float]) -> str:
 
 
 def _place(shown: ShownScene, reference: int, frame: int, units: Units) -> tuple[str, str]:
-    texts = units.texts(shown.pose_in(reference, frame))
+    return _texts(units, shown.pose_in(reference, frame))
+
+
+def _texts(units: Units, pose: Pose) -> tuple[str, str]:
+    texts = units.texts(pose)
     return (f'xyz {" ".join(texts[:3])} {units.length.name}',
             f'rpy {" ".join(texts[3:])} {units.angle.name}')
 
 
-def _relative_to(shown: ShownScene, frame: int, reference: int) -> str:
-    """Return the attribute of a pose; empty if SDFormat has no name for the frame."""
-    element, own, names = shown.element_of(reference), shown.element_of(frame), shown.scene.names
-    if element < 0:
+def _relative_to(scene: Scene, element: int, reference: int) -> str:
+    """Return the attribute of a pose; empty if SDFormat has no name for the reference."""
+    if reference < 0:
         return ''
-    holder = int(shown.scene.parents[own]) if own >= 0 else -1
-    scope = names[holder] + SEPARATOR if holder >= 0 else ''
-    return f' relative_to={quoteattr(names[element].removeprefix(scope))}'
+    holder = int(scene.parents[element]) if element >= 0 else -1
+    scope = scene.names[holder] + SEPARATOR if holder >= 0 else ''
+    return f' relative_to={quoteattr(scene.names[reference].removeprefix(scope))}'
 
 
 def html_of_place(shown: ShownScene, frame: int, reference: int, units: Units) -> str:
     """Write the pose of a frame in another one in a line."""
     return (f'<b>{escaped(shown.ids[frame])}</b> in {escaped(shown.ids[reference])}: '
             f'{", ".join(_place(shown, reference, frame, units))}')
+
+
+def html_of_pose_in_file(shown: ShownScene, frame: int, units: Units) -> str:
+    """Write the pose that places a frame in its file; empty for a frame without an element."""
+    scene, element = shown.loaded, shown.element_of(frame)
+    if element < 0:
+        return ''
+    path, line, is_written = place_of_pose(scene, element)
+    reference = int(scene.references[element])
+    xyz, rpy = _texts(units, scene.relative_pose_of(
+        scene.placements.get(element, element), reference))
+    return escaped(
+        f'in the file {Path(path).resolve()}:{line}{_relative_to(scene, element, reference)}: '
+        + (f'{xyz}, {rpy}' if is_written else 'no pose'))
 
 
 def html_of_moved(old: TfTree, new: TfTree, frame: int) -> str:
@@ -151,7 +171,7 @@ def html_of_reasons(lines: Sequence[str]) -> str:
 
 
 def rows_of_tree(
-    tree: TfTree, search: str, folded: Container[str] = (),
+    shown: ShownScene, search: str, folded: Container[str] = (),
 ) -> Iterator[tuple[int, int, str, bool]]:
     """
     List frames, each below its parent in TF, but not those that only a merge has named.
@@ -160,7 +180,7 @@ def rows_of_tree(
     :param folded: the ids of frames whose children are not listed, unless they are searched.
     :return: the index, the depth in the tree and the text of each, and whether it has children.
     """
-    children: dict[int, list[int]] = {}
+    tree, children = shown.tree, dict[int, list[int]]()
     for index, parent in enumerate(tree.parents.tolist()):
         children.setdefault(parent, []).append(index)
     waiting = [(index, 0) for other in (NO_PARENT, ROOT_IS_PARENT)
@@ -168,10 +188,9 @@ def rows_of_tree(
     while waiting:
         index, depth = waiting.pop()
         frame_id, below = tree.frame_ids[index], children.get(index, ())
-        name = frame_id.rpartition('/')[2]
-        if not is_name_of_proxy(name):
+        if not is_name_of_proxy(frame_id.rpartition('/')[2]):
             if not search:
-                yield index, min(depth, 20), name, bool(below)
+                yield index, min(depth, 20), shown.short_names[index], bool(below)
             elif search.lower() in frame_id.lower():
                 yield index, 0, frame_id, False
         if search or frame_id not in folded:

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Mapping
 from functools import partial
 import math
@@ -16,7 +15,7 @@ import viser
 
 from sdf_pose_bridge.cli.printing import Unit, Units
 from sdf_pose_bridge.cli.viewer.server import Events
-from sdf_pose_bridge.cli.viewer.shown_scene import JointRange
+from sdf_pose_bridge.cli.viewer.shown_scene import JointRange, short_names
 from sdf_pose_bridge.names import printable
 
 _STEPS, _STEP_S = 31, 0.05
@@ -40,19 +39,18 @@ class JointSliders:
         self.moves: Iterator[None] = iter(())
         """Moves each joint through its range, as far as it is iterated over."""
         self._sliders: dict[str, Any] = {}
-        short_names = Counter(name.rpartition('/')[2] for name in ranges)
         self.folder = gui.add_folder('Joints', order=order, visible=bool(ranges))
         with self.folder:
             buttons = gui.add_button_group(
                 'all joints', ('home', 'middle'),
                 hint='home is zero, or the nearest limit; middle is between the limits')
             move = gui.add_button('Move each joint through its range', color='gray')
-            for name, limits in ranges.items():
-                unit, short = self._unit(name), name.rpartition('/')[2]
+            for (name, limits), short in zip(ranges.items(), short_names(ranges), strict=True):
+                unit = self._unit(name)
                 lower, upper = unit.factor * limits.lower, unit.factor * limits.upper
                 at = min(max(unit.factor * positions.get(name, 0.0), lower), upper)
                 self._sliders[name] = slider = gui.add_slider(
-                    printable(short if short_names[short] == 1 else name), lower, upper,
+                    printable(short), lower, upper,
                     max((upper - lower) / 1000.0, 1e-9), at, hint=printable(name), marks=(
                         (lower, f'{lower:.4g}'), (0.5 * (lower + upper), unit.name),
                         (upper, f'{upper:.4g}')))

@@ -14,6 +14,7 @@ import io
 import os
 from pathlib import Path
 import re
+import time
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -35,7 +36,7 @@ MOST_BYTES = 100_000_000
 MOST_TRIANGLES = 500_000
 """Largest number of triangles of a mesh."""
 ALLOWANCE = Allowance(processor_s=20.0, memory_bytes=2_000_000_000)
-"""Limits for reading a mesh."""
+"""Limits for reading meshes; the processor time is for all of them together."""
 MOST_BYTES_KEPT = 300_000_000
 """Largest size of all meshes that are kept."""
 FORMATS = ('.dae', '.glb', '.gltf', '.obj', '.stl')
@@ -76,6 +77,10 @@ class Mesh(NamedTuple):
             int(part.points.nbytes + part.faces.nbytes) + len(part.glb) for part in self.parts)
 
 
+_TOO_SLOW = Mesh(reason=(
+    f'all meshes together need more than {ALLOWANCE.processor_s:.0f} s of processor time'))
+
+
 class MeshReader:
     """Reads meshes, and keeps them until they are too large together."""
 
@@ -84,6 +89,8 @@ class MeshReader:
         self._process = process
         self._kept: dict[tuple[str, Shape, int, int], Mesh] = {}
         self._kept_bytes = 0
+        self.left_s = ALLOWANCE.processor_s
+        """The processor time that is left for further meshes."""
 
     def mesh(self, shape: Shape, file: str, size_m: float) -> Mesh:
         """
@@ -113,18 +120,31 @@ class MeshReader:
         status = os.stat(path)  # noqa: PTH116
         key = path, shape, status.st_mtime_ns, status.st_size
         if key not in self._kept:
+            left_s, begin_s = self.left_s, time.monotonic()
+            if left_s <= 0.0:
+                return _TOO_SLOW
             try:
-                mesh = self._process.call(ALLOWANCE, mesh_from_file, path, shape)
-            except LimitExceededError as error:
-                mesh = Mesh(reason=f'it needs {error} to be read')
-            except ProcessEndedError as error:
-                mesh = Mesh(reason=str(error))
+                mesh, used_s = self._process.call(
+                    ALLOWANCE._replace(processor_s=left_s), mesh_and_time, path, shape)
+            except (LimitExceededError, ProcessEndedError) as error:
+                # How much of this was processor time is not known.
+                used_s = time.monotonic() - begin_s
+                needs_more = isinstance(error, LimitExceededError)
+                mesh = Mesh(reason=f'it needs {error} to be read' if needs_more else str(error))
+            self.left_s -= used_s
+            if mesh.reason and self.left_s <= 0.0 and left_s < ALLOWANCE.processor_s:
+                return _TOO_SLOW
             self._kept_bytes += mesh.size
             if self._kept_bytes > MOST_BYTES_KEPT:
                 self._kept.clear()
                 self._kept_bytes = mesh.size
             self._kept[key] = mesh
         return self._kept[key]
+
+
+def mesh_and_time(path: str, shape: Shape) -> tuple[Mesh, float]:
+    """Read a mesh; also return the processor time in s that this process has used."""
+    return mesh_from_file(path, shape), time.process_time()
 
 
 def mesh_from_file(path: str, shape: Shape) -> Mesh:

@@ -22,11 +22,12 @@ from sdf_pose_bridge.cli.viewer.frame_texts import (
     html_of_lines,
     html_of_moved,
     html_of_place,
+    html_of_pose_in_file,
     html_of_reasons,
     rows_of_tree,
 )
 from sdf_pose_bridge.cli.viewer.joint_sliders import JointSliders
-from sdf_pose_bridge.cli.viewer.meshes import MeshReader
+from sdf_pose_bridge.cli.viewer.meshes import ALLOWANCE, MeshReader
 from sdf_pose_bridge.cli.viewer.pose_edit import FindChange, PoseEdit
 from sdf_pose_bridge.cli.viewer.server import Events, server_for_its_owner
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
@@ -51,7 +52,7 @@ _MOST_CHOICES = 1000
 _PANEL_WIDTH, _PANEL_PART, _LEAST_WIDTH = 360, 0.35, 720
 """The largest width of the panel in pixels and as a part of a window, and the least width of a
 window in which it is open at first."""
-_ROWS_STYLE = ('<style>.rows{max-height:40vh;overflow:auto;margin:0 1em;font-size:0.8em}'
+_ROWS_STYLE = ('<style>.rows{max-height:30vh;overflow:auto;margin:0 1em;font-size:0.8em}'
                '.rows div{display:flex;white-space:pre} .rows label{flex:1}'
                '.rows [data-ask]{cursor:pointer} .rows :is(b, i){width:1.2em;color:#4dabf7}'
                '.rows .selected{font-weight:bold}</style>')
@@ -62,7 +63,7 @@ _EYES, _FOLDS = ('\u25c9', '\u25cb'), ('\u25be', '\u25b8')
 
 
 class SelectedFrame:
-    """The folder with the tree of frames, and a given one of the selected frame."""
+    """A given folder with the tree of frames, and one of the selected frame."""
 
     def __init__(self, gui: viser.GuiApi, folder: viser.GuiFolderHandle, events: Events) -> None:
         self._ids: tuple[str, ...] = ()
@@ -70,11 +71,11 @@ class SelectedFrame:
         self._folded: set[str] = set()
         self.hidden: set[str] = set()
         """The ids of the frames that are hidden with all that is in them."""
-        with gui.add_folder('Frames'):
+        with folder:
             self._search = gui.add_text('search', '', hint='frames are selected in the scene, too')
             self._rows = gui.add_html('')
-        self._folder = folder
-        with folder:
+        self._folder = gui.add_folder('Selected frame', visible=False)
+        with self._folder:
             self._choice = gui.add_dropdown(
                 'relative to', ('',), hint='for the pose and the distance')
             measure = gui.add_button(
@@ -114,7 +115,7 @@ class SelectedFrame:
         choices = (tree.root_frame, *ids[:_MOST_CHOICES])
         if choices != self._choice.options:
             self._choice.options = choices
-        rows = list(islice(rows_of_tree(tree, self._search.value, self._folded), MOST_ROWS))
+        rows = list(islice(rows_of_tree(shown, self._search.value, self._folded), MOST_ROWS))
         content = ''.join(
             f'<div style="padding-left:{depth}em"><i data-ask="fold {frame}">'
             f'{_FOLDS[ids[frame] in self._folded] if has_children else ""}</i>'
@@ -145,7 +146,7 @@ class Page:
         self, client: viser.ClientHandle, shown: ShownScene, errors: str, wake: threading.Event,
         units: Units, meshes: MeshReader, find_change: FindChange | None,
     ) -> None:
-        self._client, self._shown, self._units, self._meshes = client, shown, units, meshes
+        self._client, self._shown, self._meshes = client, shown, meshes
         self._events, self._hidden, gui = Events(wake), {*HIDDEN_AT_FIRST}, client.gui
         self._dock_panel()
         self._reasons = gui.add_html('')
@@ -159,19 +160,25 @@ class Page:
             gui.add_html('<div class="asked"></div>')
             asked = gui.add_text('asked', '')
         self._events.when(asked.on_update, lambda: self._answer(asked.value.partition(' ')[2]))
+        folder_of_frames = gui.add_folder('Frames')
+        # They are in view where a frame is clicked in the tree.
         self._edit = None if find_change is None else PoseEdit(
             client, shown, find_change, self._events)
-        folder_of_selected = gui.add_folder('Selected frame', visible=False)
-        self._angles = self._add_view_controls()
+        self._selected = SelectedFrame(gui, folder_of_frames, self._events)
+        self._angles, self._dark = self._add_view_controls(units)
         self._switches = self._add_switches()
         self._joints = JointSliders(gui, shown.joints, {}, units, self._events)
-        self._selected = SelectedFrame(gui, folder_of_selected, self._events)
         self._node_names = cycle(('/drawing', '/other drawing'))
         self._drawing = self._new_drawing()
         self.show(shown)
         self.show_errors(errors)
         if client.camera.aspect < 1.0:
             self._look('home')
+
+    @property
+    def units(self) -> Units:
+        """The units of the poses and sliders that are shown."""
+        return self._joints.units
 
     def show(self, shown: ShownScene) -> None:
         """Show another scene; hidden groups, the selected frame and positions of joints stay."""
@@ -200,7 +207,7 @@ class Page:
     def _refresh(self) -> None:
         """Show the current state of the controls."""
         shown, selected, edit = self._shown, self._selected, self._edit
-        units = self._units._replace(angle=_ANGLES[self._angles.value])
+        units = self.units._replace(angle=_ANGLES[self._angles.value])
         # Many sliders take a browser long.
         if (shown.joints, units) != (self._joints.ranges, self._joints.units):
             self._joints.folder.remove()
@@ -222,7 +229,8 @@ class Page:
             if edit.pose is not None:
                 drawn = drawn.with_pose(frame, edit.pose)
         if frame >= 0:
-            strip = (html_of_place(drawn, frame, reference, units)
+            strip = (f'{html_of_place(drawn, frame, reference, units)}'
+                     f'<div>{html_of_pose_in_file(shown, frame, units)}</div>'
                      + html_of_moved(shown.tree, drawn.tree, frame) + strip)
         self._labels.content = html_of_data(
             'labels', self._drawing.show(drawn, frame, reference, units.length))
@@ -253,6 +261,8 @@ class Page:
         verb, _, frame = ask.partition(' ')
         if verb in {'select', 'fold', 'hide'}:
             self._selected.answer(verb, int(frame))
+        elif verb == 'dark':
+            self._dark.value = True
         elif self._edit is not None and ask in self._edit.actions:
             self._edit.actions[ask]()
 
@@ -269,14 +279,16 @@ class Page:
         self._events.when(switch.on_update, lambda: (
             self._hidden.discard if switch.value else self._hidden.add)(name))
 
-    def _add_view_controls(self) -> viser.GuiDropdownHandle[str]:
-        """Add the folder "View"; return the unit of angles in it."""
+    def _add_view_controls(
+        self, units: Units,
+    ) -> tuple[viser.GuiDropdownHandle[str], viser.GuiCheckboxHandle]:
+        """Add the folder "View"; return the unit of angles in it, and whether it is dark."""
         gui = self._client.gui
         with gui.add_folder('View'):
             views = gui.add_button_group('view', ('home', *DIRECTIONS, 'zoom to'))
             opacity = gui.add_slider('opacity', 0.1, 1.0, 0.05, 1.0)
             angles = gui.add_dropdown(
-                'angles', tuple(_ANGLES), initial_value=self._units.angle.name)
+                'angles', tuple(_ANGLES), initial_value=units.angle.name)
             dark = gui.add_checkbox('dark background', initial_value=False)
         self._events.when(views.on_click, lambda: self._look(views.value))
         self._events.when(opacity.on_update, lambda: setattr(
@@ -284,7 +296,7 @@ class Page:
         self._events.when(angles.on_update)
         self._events.when(dark.on_update, lambda: gui.configure_theme(
             show_logo=False, show_share_button=False, dark_mode=dark.value))
-        return angles
+        return angles, dark
 
     def _look(self, name: str) -> None:
         """Turn the camera to a view; "zoom to" shows the selected frame, link or model."""
@@ -310,7 +322,8 @@ class Pages:
     :param scene: the scene that they show at first, loaded with its shapes.
     :param options: the elements that are frames, and the rules for their names.
     :param port: their port, or the next one that is free; 0 for any.
-    :param units: the units of poses and sliders at first.
+    :param units: the units of poses and sliders at first; a tab that is opened later has those of
+        the tab in which they were chosen last.
     :param find_change: finds the change of a file for a pose; None if frames cannot be moved.
     :raises SdfError: if the scene has no TF tree, or a model to show does not exist.
     """
@@ -319,7 +332,8 @@ class Pages:
         self, scene: Scene, options: TfOptions, port: int, units: Units, meshes: MeshReader,
         find_change: FindChange | None = None,
     ) -> None:
-        self._options, self._units, self._shown = options, units, ShownScene(scene, options)
+        self._options, self._units, self._meshes = options, units, meshes
+        self._shown = ShownScene(scene, options)
         self._visible = visible = VisiblePart(
             self._shown, meshes, HIDDEN_AT_FIRST - {'all names'})
         self.reasons = visible.reasons
@@ -334,7 +348,7 @@ class Pages:
         camera.near, camera.far = 0.001 * visible.size_m, 100.0 * visible.size_m
         self._wake, self._pages = threading.Event(), dict[int, Page]()
         self._new_page = partial(
-            Page, wake=self._wake, units=units, meshes=meshes, find_change=find_change)
+            Page, wake=self._wake, meshes=meshes, find_change=find_change)
         self._server.on_client_connect(lambda _: self._wake.set())
 
     def html(self, title: str) -> str:
@@ -353,6 +367,7 @@ class Pages:
     def show(self, scene: Scene) -> None:
         """Show another scene; raise an SdfError as the constructor does."""
         self._shown = ShownScene(scene, self._options)
+        self._meshes.left_s = ALLOWANCE.processor_s
         self.show_errors(())
         for page in self._pages.values():
             page.show(self._shown)
@@ -368,7 +383,11 @@ class Pages:
         self._wake.wait(seconds)
         self._wake.clear()
         self._pages = {
-            number: self._pages.get(number) or self._new_page(client, self._shown, self._errors)
+            number: self._pages.get(number) or self._new_page(
+                client, self._shown, self._errors, units=self._units)
             for number, client in self._server.get_clients().items()}
         for page in self._pages.values():
+            before = page.units
             page.act()
+            if page.units != before:
+                self._units = page.units

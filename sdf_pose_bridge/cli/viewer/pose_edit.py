@@ -11,14 +11,15 @@ from typing import TypeAlias
 
 import viser
 
+from sdf_pose_bridge.cli.convert import number_from_text
 from sdf_pose_bridge.cli.printing import POSE_LABELS, Units
 from sdf_pose_bridge.cli.viewer.frame_texts import escaped, html_of_difference, html_of_lines
 from sdf_pose_bridge.cli.viewer.server import Events
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.geometry.formats import POSE_FORMATS
+from sdf_pose_bridge.geometry.formats import converted_poses, POSE_FORMATS, PoseFormatError
 from sdf_pose_bridge.geometry.poses import Pose, pose_product, relative_pose
-from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy, rpy_from_quaternion
+from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
 from sdf_pose_bridge.scene.pose_setting import Measure, PoseChange
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.file_change import FileChange
@@ -26,9 +27,6 @@ from sdf_pose_bridge.tf.joint_positions import scene_at_positions
 
 FindChange: TypeAlias = Callable[[Scene, int, Pose, Measure], PoseChange]
 """Finds a change as :func:`~sdf_pose_bridge.scene.pose_setting.pose_change` does."""
-
-_STEPS = (1.0, 10.0, 100.0, 1000.0)
-"""Step of the arrows beside a number, in units of its last digit."""
 
 
 class PoseEdit:
@@ -47,18 +45,19 @@ class PoseEdit:
         self._looked_at: tuple[object, ...] = ()
         self._notes: tuple[str, ...] = ()
         self._errors: list[str] = []
-        self._undone: FileChange | None = None
+        self._refusal = ''
+        """The reason why a typed text is not taken."""
+        self._undone: PoseChange | None = None
         # In pixels: with lines of this width, 24 of them react to the pointer.
         self._gizmo = client.scene.add_transform_controls(
             '/gizmo', 110.0, line_width=6.0, fixed=True, depth_test=False, visible=False)
         self._placed = Pose()
         gui = client.gui
         with gui.add_folder('Edit'):
-            self._numbers = [gui.add_number(label, 0.0, disabled=True) for label in POSE_LABELS]
-            self._steps = gui.add_dropdown('steps', ('',))
-        for control in (self._gizmo, self._steps, *self._numbers):
+            self._numbers = [gui.add_text(label, '', disabled=True) for label in POSE_LABELS]
+        for control in (self._gizmo, *self._numbers):
             events.when(control.on_update)
-        self._values, self._shown_for = [0.0] * 6, (Pose(), Pose(), Units())
+        self._texts, self._shown_for = [''] * 6, (Pose(), Pose(), Units())
 
     def refresh(self, shown: ShownScene, frame: int, reference: int, units: Units) -> None:
         """
@@ -117,43 +116,59 @@ class PoseEdit:
         """The actions that are possible now, by the labels to click."""
         actions: dict[str, Callable[[], object]] = {}
         if self.pose is not None and not self._is_written:
-            actions |= {'write to file': self._write_pose, 'cancel': lambda: self._take(None)}
+            actions['write to file'] = self._write_pose
+        if self._refusal:
+            actions = {}
+        if self._refusal or actions:
+            actions['cancel'] = lambda: self._take(None)
         if self._undone is not None:
-            actions['undo the last write'] = partial(self._write, self._undone, None)
+            actions['undo the last write'] = partial(self._write, self._undone.file, None)
         return actions
 
     @property
     def html(self) -> str:
         """The new pose beside the one in the file, errors, and labels to click."""
-        text = '' if self._change is None else (
-            f'<div>in the file {escaped(str(Path(self._change.file.path).resolve()))}</div>')
+        text = ''
         if self.pose is not None and not self._is_written:
             text += html_of_difference(
                 self._target[1], self.pose, self._reference, self._shown_for[2])
+        if self._undone is not None:
+            path = Path(self._undone.file.path)
+            text += f'<div>written to {escaped(path.name)}:{self._undone.line}</div>'
         labels = (f'<label data-ask="{label}">{label}</label>' for label in self.actions)
         # Before anything is changed, they are only the reason why nothing can be.
         errors = html_of_lines('errors' if self.pose else 'errors_of_setting', self._errors)
-        return f'{text}{html_of_lines("errors", self._notes)}{errors}{"".join(labels)}'
+        notes = html_of_lines('errors', filter(None, (*self._notes, self._refusal)))
+        return f'{text}{notes}{errors}{"".join(labels)}'
 
     def _take(self, pose: Pose | None, *notes: str) -> None:
         self.pose, self._notes, self._is_written = pose, notes, False
         if pose is None:
-            self._errors = []
+            self._errors, self._refusal = [], ''
+            # What was refused goes, too.
+            for number, text in zip(self._numbers, self._texts, strict=True):
+                number.value = text
 
     def _take_numbers(self) -> None:
-        typed = [number.value for number in self._numbers]
-        if typed == self._values:
+        typed, self._refusal = [number.value for number in self._numbers], ''
+        if typed == self._texts:
             return
         reference, pose, units = self._shown_for
         at = relative_pose(reference, pose)
-        in_si = [number / unit.factor for number, unit in zip(typed, units.of_pose, strict=True)]
-        # Numbers that were not typed keep all their digits.
-        values = [exact if number == shown else value for exact, number, shown, value in zip(
-            (*at[:3], *rpy_from_quaternion(at[3:])), typed, self._values, in_si, strict=True)]
-        pose = pose_product(
-            reference, Pose(*(*values[:3], *quaternion_from_rpy(tuple(values[3:])))))
-        self._values, self._shown_for = typed, (reference, pose, units)
-        doubt = POSE_FORMATS['sdf_rpy'].doubt(in_si)
+        try:
+            # Numbers that were not typed keep all their digits.
+            values = [
+                exact if text == shown else number_from_text(text) / unit.factor
+                for exact, text, shown, unit in zip(
+                    (*at[:3], *rpy_from_quaternion(at[3:])), typed, self._texts, units.of_pose,
+                    strict=True)]
+            pose = pose_product(
+                reference, Pose(*converted_poses(values, 'sdf_rpy', 'sdf_quat_xyzw').tolist()))
+        except PoseFormatError as error:
+            self._refusal = str(error)
+            return
+        self._texts, self._shown_for = typed, (reference, pose, units)
+        doubt = POSE_FORMATS['sdf_rpy'].doubt(values)
         self._take(
             pose, *[f'{doubt.reason}; did you mean {doubt.likely_unit}?'] if doubt else ())
 
@@ -169,15 +184,8 @@ class PoseEdit:
         return Pose(*(*self._gizmo.position.tolist(), x, y, z, w))
 
     def _show(self, units: Units) -> None:
-        options = tuple(', '.join(
-            f'{step * 0.1 ** unit.digits:g} {unit.name}' for unit in units) for step in _STEPS)
-        if options != self._steps.options:
-            self._steps.options, self._steps.value = options, options[1]
-        step = _STEPS[options.index(self._steps.value)]
         for number, label, unit in zip(self._numbers, POSE_LABELS, units.of_pose, strict=True):
             number.label = f'{label} [{unit.name}]'
-            number.precision = unit.digits + 2
-            number.step = step * 0.1 ** unit.digits
             number.disabled = self._change is None
         self._gizmo.visible = self._change is not None
         pose = self._pose
@@ -187,19 +195,21 @@ class PoseEdit:
             self._placed = self._pose_of_gizmo
         shown_for = self._reference, pose, units
         if shown_for != self._shown_for:
-            before, self._shown_for = self._values, shown_for
-            self._values = [*map(float, units.texts(relative_pose(self._reference, pose)))]
-            for number, value, old in zip(self._numbers, self._values, before, strict=True):
+            before, self._shown_for = self._texts, shown_for
+            self._texts = units.texts(relative_pose(self._reference, pose))
+            for number, text, old in zip(self._numbers, self._texts, before, strict=True):
                 # Other numbers may have been typed just now.
-                if value != old:
-                    number.value = value
+                if text != old:
+                    number.value = text
 
     def _write_pose(self) -> None:
+        self._take_numbers()
         self.look_ahead()
-        if self._change is not None and not self._errors:
-            self._write(self._change.file, self._change.file.undone)
+        if self._change is not None and not self._errors and not self._refusal:
+            file = self._change.file
+            self._write(file, self._change._replace(file=file.undone))
 
-    def _write(self, change: FileChange, undone: FileChange | None) -> None:
+    def _write(self, change: FileChange, undone: PoseChange | None) -> None:
         try:
             change.write()
             self._undone, self._is_written, self._notes = undone, True, ()

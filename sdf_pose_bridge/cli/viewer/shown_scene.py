@@ -4,9 +4,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 import copy
 from dataclasses import replace
+from itertools import accumulate, chain
 import math
 from typing import NamedTuple
 
@@ -25,6 +27,8 @@ from sdf_pose_bridge.tf.tree import elements_in_model, tf_tree_from_scene, TfOpt
 _LARGEST_RANGE = 1000.0
 """A joint with a wider range counts as one without limits, which the page moves by half a turn or
 half a metre to either side."""
+_MOST_SCOPES = 4
+"""Largest number of scopes of a short name; others have all of them."""
 
 
 class JointRange(NamedTuple):
@@ -46,6 +50,15 @@ def range_of_dof(dof: DegreeOfFreedom) -> JointRange:
     return JointRange(is_angle, axis.lower, max(axis.lower, axis.upper))
 
 
+def short_names(names: Iterable[str]) -> list[str]:
+    """Return the ends of names such as ``arm/tool``, as short as they are unique."""
+    ends = [
+        [*accumulate(reversed(name.rsplit('/', _MOST_SCOPES)), lambda end, part: f'{part}/{end}')]
+        for name in names]
+    counts = Counter(chain.from_iterable(ends))
+    return [next((end for end in each if counts[end] == 1), each[-1]) for each in ends]
+
+
 class ShownScene:
     """
     A scene as the page shows it, at some positions of its joints; at first where they start.
@@ -57,13 +70,14 @@ class ShownScene:
 
     def __init__(self, loaded: Scene, options: TfOptions) -> None:
         self.loaded, self._options = loaded, options
-        dofs = JointMotion(loaded, tf_parents_from_scene(loaded)).dofs
+        dofs = sorted(JointMotion(loaded, tf_parents_from_scene(loaded)).dofs,
+                      key=lambda dof: dof.joint.element)
         self.is_in_model = elements_in_model(loaded, options.model) & (loaded.roots == 0)
         """Shape (n,): whether each element is to be shown."""
         self.joints: dict[str, JointRange] = {
             dof.name: range_of_dof(dof) for dof in dofs
             if self.is_in_model[dof.joint.element] and dof.axis.mimic is None}
-        """The range of each degree of freedom that does not follow another one."""
+        """The range of each degree of freedom that does not follow another one, in file order."""
         self.positions: Mapping[str, float] = {
             name: min(max(0.0, limits.lower), limits.upper)
             for name, limits in self.joints.items()}
@@ -74,6 +88,8 @@ class ShownScene:
         """The TF tree at these positions."""
         self.ids: Sequence[str] = (*self.tree.frame_ids, self.tree.root_frame)
         """The ids of all frames, and of the root frame, at the index ``ROOT_IS_PARENT``."""
+        self.short_names: Sequence[str] = short_names(self.tree.frame_ids)
+        """The ids of frames without the scopes that are not needed to tell them apart."""
         self.labels: Sequence[str] = kind_labels_of(loaded, self.tree)
         """The label of the kind of each frame."""
         self.is_in_robot = self.is_in(

@@ -3,6 +3,7 @@
 """What the page says about frames: the numbers, the forms to copy, and that names are text."""
 
 import html
+from pathlib import Path
 import re
 import shlex
 
@@ -14,6 +15,7 @@ from sdf_pose_bridge.cli.viewer.frame_texts import (
     html_of_frame,
     html_of_moved,
     html_of_place,
+    html_of_pose_in_file,
     html_of_reasons,
     rows_of_tree,
 )
@@ -122,6 +124,16 @@ def test_optical_frame_has_no_name_in_the_file(described):
     assert 'm::l::s_optical' not in described('m/l/s_optical')
 
 
+@pytest.mark.parametrize(('frame', 'line'), [
+    ('m', ':1 relative_to="world": xyz 1.0000 2.0000 3.0000 m, rpy 0.0000 0.0000 1.5000 rad'),
+    ('m/f', ':3 relative_to="l": xyz 0.5000 0.0000 0.0000 m, rpy 0.0000 0.0000 0.0000 rad'),
+    ('m/l', ':2 relative_to="m": no pose'), ('m/l/s_optical', '')])
+def test_pose_as_it_stands_in_the_file(scene, frame, line):
+    shown = ShownScene(scene, TfOptions())
+    text = html.unescape(html_of_pose_in_file(shown, shown.ids.index(frame), Units()))
+    assert text == (line and f'in the file {Path("cell.sdf").resolve()}{line}')
+
+
 def test_name_is_text(scene):
     text = html_of(scene, HOSTILE)
     assert '<img' not in text
@@ -129,25 +141,26 @@ def test_name_is_text(scene):
 
 
 def test_rows_stand_below_their_parents(scene):
-    rows = [(depth, text) for _, depth, text, _ in rows_of_tree(tf_tree_from_scene(scene), '')]
+    rows = [row[1:3] for row in rows_of_tree(ShownScene(scene, TfOptions()), '')]
     assert rows == [
         (0, 'l'), (1, 'm'), (1, 's'), (2, 's_optical'), (1, 'f'), (0, HOSTILE)]
 
 
 def test_children_of_a_folded_frame_are_not_listed(scene):
-    rows = [row[2:] for row in rows_of_tree(tf_tree_from_scene(scene), '', {'m/l/s'})]
+    rows = [row[2:] for row in rows_of_tree(ShownScene(scene, TfOptions()), '', {'m/l/s'})]
     assert rows == [('l', True), ('m', False), ('s', True), ('f', False), (HOSTILE, False)]
 
 
 def test_frame_that_only_a_merge_has_named_is_not_listed():
     names = ('_merged__a__model__', '_merged__a', 'b')
     frames = ''.join(f'<frame name="{name}"/>' for name in names)
-    tree = tf_tree_from_scene(load_text(
-        f'<sdf version="1.11"><world name="w">{frames}</world></sdf>'.encode(), 'cell.sdf'))
-    assert [text for _, _, text, _ in rows_of_tree(tree, '')] == ['_merged__a', 'b']
+    shown = ShownScene(load_text(
+        f'<sdf version="1.11"><world name="w">{frames}</world></sdf>'.encode(), 'cell.sdf'),
+        TfOptions())
+    assert [text for _, _, text, _ in rows_of_tree(shown, '')] == ['_merged__a', 'b']
 
 
 def test_search(scene):
-    tree = tf_tree_from_scene(scene)
-    assert [text for _, _, text, _ in rows_of_tree(tree, 'M/L/', {'m/l'})] == [
+    shown = ShownScene(scene, TfOptions())
+    assert [text for _, _, text, _ in rows_of_tree(shown, 'M/L/', {'m/l'})] == [
         'm/l/s', 'm/l/s_optical']

@@ -248,6 +248,12 @@ def named(reader, tmp_path):
     return read
 
 
+def endless(*_):
+    """Use processor time as long as there is some."""
+    while True:
+        pass
+
+
 def test_missing_mesh(named):
     assert re.match('it is not in ".+"', named('none.stl').reason)
 
@@ -275,6 +281,21 @@ def test_kept_meshes_are_not_too_large_together(named, reader, monkeypatch):
     for y, count in ((2, 2), (3, 1), (4, 2)):
         named('a.stl', mesh_texts.STL.format(y=y) + y * ' ')
         assert (len(reader._kept), reader._kept_bytes) == (count, count * size)
+
+
+def test_meshes_have_one_processor_time_together(named, reader, monkeypatch):
+    first = named('a.stl', mesh_texts.STL.format(y=1))
+    assert 0.0 < meshes.ALLOWANCE.processor_s - reader.left_s < 5.0
+    reader.left_s = 0.0
+    assert named('a.stl') is first
+    reason = 'all meshes together need more than 20 s of processor time'
+    assert named('b.stl', mesh_texts.STL.format(y=2)).reason == reason
+    monkeypatch.setattr(meshes, 'mesh_and_time', endless)
+    reader.left_s = 0.5
+    assert named('b.stl').reason == reason
+    monkeypatch.undo()
+    reader.left_s = meshes.ALLOWANCE.processor_s
+    assert not named('b.stl').reason
 
 
 # Shapes without a file

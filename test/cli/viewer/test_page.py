@@ -12,9 +12,9 @@ import pytest
 pytest.importorskip('viser', reason='needs viser')
 
 from sdf_pose_bridge import load
-from sdf_pose_bridge.cli.printing import Units
+from sdf_pose_bridge.cli.printing import DEGREES, Units
 from sdf_pose_bridge.cli.viewer import page as page_module
-from sdf_pose_bridge.cli.viewer.page import Page, SelectedFrame
+from sdf_pose_bridge.cli.viewer.page import Page, Pages, SelectedFrame
 from sdf_pose_bridge.cli.viewer.server import Events
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.scene.loading import load_text
@@ -114,9 +114,23 @@ def test_number_that_is_typed_while_a_file_is_read_stays(page_of, scene_of):
     select(page, 'l')
     while page._edit._numbers[0].disabled:
         page.act()
-    page._edit._numbers[0].value = 0.5
+    page._edit._numbers[0].value = '0.5'
     page.show(scene_of(''))
     assert page._edit.pose.x == pytest.approx(0.5)
+
+
+def test_tab_has_the_unit_that_was_chosen_last(scene_of, mesh_reader, server):
+    pages = Pages(scene_of('').loaded, TfOptions(), 0, Units(), mesh_reader)
+    clients = {1: server}
+    pages._server.get_clients = lambda: clients
+    pages.act(0.0)
+    pages._pages[1]._angles.value = 'deg'
+    while pages._units.angle is not DEGREES:
+        pages.act(0.1)
+    clients[2] = server
+    pages.act(0.0)
+    assert pages._pages[2].units.angle is DEGREES
+    pages.close()
 
 
 def test_line_joins_the_frames_that_are_measured(page_of):

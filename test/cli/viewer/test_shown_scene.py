@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 pytest.importorskip('viser', reason='needs viser')
-from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
+from sdf_pose_bridge.cli.viewer.shown_scene import short_names, ShownScene
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.scene.loading import load_text
@@ -33,6 +33,26 @@ def test_only_the_model_that_is_asked_for():
     scene = shown(model='table')
     assert [*scene.joints] == []
     assert np.array(scene.loaded.names)[scene.is_in_model].tolist() == ['table', 'table::l']
+
+
+def test_joints_are_in_file_order():
+    joints = ''.join(
+        f'<link name="{child}"/><joint name="{joint}" type="revolute"><parent>{parent}</parent>'
+        f'<child>{child}</child><axis><xyz>0 0 1</xyz></axis></joint>'
+        for joint, parent, child in (('j1', 'base', 'a'), ('j2', 'a', 'a2'), ('j3', 'base', 'b')))
+    text = f'<sdf version="1.11"><model name="m"><link name="base"/>{joints}</model></sdf>'
+    scene = ShownScene(load_text(text.encode(), 'm.sdf'), TfOptions())
+    assert [*scene.joints] == ['j1', 'j2', 'j3']
+
+
+@pytest.mark.parametrize(('names', 'expected'), [
+    (['a/link', 'b/link', 'b/top'], ['a/link', 'b/link', 'top']),
+    (['table', 'x/table', 'x/y/table'], ['table', 'x/table', 'y/table']),
+    (['p/x/c', 'q/x/c'], ['p/x/c', 'q/x/c']), (['a/' * 9 + 'c', 'b/c'], ['a/c', 'b/c']),
+    (['a/x/x/x/x/c', 'b/x/x/x/x/c'], ['a/x/x/x/x/c', 'b/x/x/x/x/c']),
+    ([], [])])
+def test_names_are_as_short_as_they_are_unique(names, expected):
+    assert short_names(names) == expected
 
 
 def test_what_is_in_a_robot():
