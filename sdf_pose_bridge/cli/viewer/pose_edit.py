@@ -128,7 +128,8 @@ class PoseEdit:
     @property
     def html(self) -> str:
         """The new pose beside the one in the file, errors, and labels to click."""
-        text = ''
+        text = '' if self._change is None or self.pose else (
+            '<div>drag the arrows or type numbers to move it</div>')
         if self.pose is not None and not self._is_written:
             text += html_of_difference(
                 self._target[1], self.pose, self._reference, self._shown_for[2])
