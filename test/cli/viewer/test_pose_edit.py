@@ -130,14 +130,14 @@ def test_text_that_is_no_number_is_refused(written, typed):
     write = edit.actions['write to file']
     edit.refresh(*edited('free'), UNITS)
     assert edit.pose == Pose(z=1.0)
-    assert 'number' in edit.html
+    assert 'class="errors"' in edit.html
     assert [*edit.actions] == ['cancel']
     write()
     assert poses == []
     edit.actions['cancel']()
     edit.refresh(*edited('free'), UNITS)
     assert [edit._numbers[0].value, *edit.actions] == ['0.1235']
-    assert 'number' not in edit.html
+    assert 'class="errors"' not in edit.html
 
 
 def test_refused_text_stays_until_another_frame_is_selected(written):
