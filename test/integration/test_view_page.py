@@ -509,13 +509,6 @@ def test_frame_is_moved_in_a_narrow_window_where_the_panel_is_folded(shown, tmp_
         assert narrow.run(f'{ROWS}.length') == 0
 
 
-def test_panel_is_folded_at_first_in_a_very_narrow_window(shown, tmp_path):
-    with browser(tmp_path / 'browser') as narrow:
-        narrow.size(500, 700)
-        narrow.open(shown.address)
-        narrow.wait_for(f'{ROWS}.length > 0 && !{ROWS}.some(row => row.checkVisibility())')
-
-
 def test_page_asks_for_nothing_elsewhere(page, shown):
     assert [request for request in page.requests if not request.startswith(
         (shown.address, shown.address.replace('http', 'ws'), 'data:', 'blob:', 'about:'))] == []

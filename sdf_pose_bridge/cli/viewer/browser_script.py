@@ -190,7 +190,7 @@ _SCRIPT = """<script>(() => {
       asked(), `${performance.now()} ${ask}`);
     asked().dispatchEvent(new Event('input', {bubbles: true}));
   };
-  let hasEnded = false, isToBeDark = false, isToBeFolded = innerWidth < 576;
+  let hasEnded = false, isToBeDark = false;
   // viser connects in a worker, which tells the page.
   const ViserWorker = window.Worker;
   window.Worker = class extends ViserWorker {
@@ -207,9 +207,6 @@ _SCRIPT = """<script>(() => {
   let shownInStrip = '', selected;
   const update = () => {
     if (isToBeDark && asked()) { isToBeDark = false; tell('dark'); }
-    // In a very narrow window the panel is at the bottom, where viser opens it.
-    const handle = document.querySelector('[style*="bottom: 0"] [style*="pointer"]');
-    if (handle && isToBeFolded) { isToBeFolded = false; handle.click(); }
     const row = document.querySelector('.rows .selected'), rows = row?.closest('.rows');
     if (row && row.dataset.ask !== selected) {
       rows.scrollTop = row.offsetTop - rows.offsetTop - 0.5 * rows.clientHeight;
