@@ -46,7 +46,7 @@ class PoseEdit:
         self._notes: tuple[str, ...] = ()
         self._errors: list[str] = []
         self._refusal = ''
-        """The reason why a typed text is not taken."""
+        """The reason why a typed text is rejected."""
         self._undone: PoseChange | None = None
         # In pixels: with lines of this width, 24 of them react to the pointer.
         self._gizmo = client.scene.add_transform_controls(
