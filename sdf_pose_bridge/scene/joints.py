@@ -107,14 +107,14 @@ class JointChecks:
         if child.name == WORLD_FRAME:
             msg = '"world" cannot be the child of a joint, only its parent'
             self._report(JointChildError, msg, joint, child.line, 'child')
-        elif ends.child < 0 and child.name:
+        elif child.name and not _is_found(ends.child, child):
             self._report_unknown(JointChildError, joint, child, 'child')
         if parent.name and parent.name == child.name:
             msg = f'parent and child are both "{child.name}"; a joint joins two bodies'
             # libsdformat checks this in nested models too.
             self._problems.error(JointSameLinkError(msg, self._elements.place(joint)))
             return False
-        if ends.parent < 0 and parent.name:
+        if parent.name and not _is_found(ends.parent, parent):
             # libsdformat looks for other parents before it resolves them.
             is_model_frame = parent.name.rpartition(SEPARATOR)[2] == MODEL_FRAME
             self._report_unknown(
@@ -159,3 +159,8 @@ class JointChecks:
         else:
             self._problems.warning(
                 f'{message}; libsdformat does not check this here', place, error_class.code)
+
+
+def _is_found(end: int, reference: Reference) -> bool:
+    """Return whether libsdformat finds an end of a joint; others may be called ``::a``."""
+    return end >= 0 and not reference.name.startswith(SEPARATOR)

@@ -210,8 +210,12 @@ def _nest_scoped_elements(
             _nest_scoped_elements(child, sources, referrers, depth + 1)
             is_stopped = True
         part = PARTS_OF_MODEL.get(child.tag)
-        if part is None or not part.has_name or not separator or not scope or not name:
+        if part is None or not part.has_name or not separator or not name:
             continue
+        if not scope:
+            # libsdformat cuts two characters off each name in the model then.
+            msg = f'the name "{SEPARATOR}{name}" names no model before "{SEPARATOR}"'
+            raise ConversionError(msg, sources.place(child))
         if scope not in nested_models:
             if is_stopped:
                 continue

@@ -10,7 +10,6 @@ that parses a file is imported here.
 from __future__ import annotations
 
 import enum
-import hashlib
 from pathlib import Path
 from typing import NamedTuple
 
@@ -82,6 +81,8 @@ class LoadedScene(NamedTuple):
 
 def fingerprint_of_scene(scene: Scene) -> bytes:
     """Return bytes that are equal only for scenes with the same names and poses."""
+    # Imported here because it is slow to import, and would delay the first message.
+    import hashlib
     return hashlib.blake2b(b'\0'.join([
         scene.poses.tobytes(), *(name.encode() for name in scene.names)])).digest()
 

@@ -51,6 +51,13 @@ def axis_in(frame, tag='axis'):
     return f'<{tag}><xyz expressed_in="{frame}">1 0 0</xyz></{tag}>'
 
 
+@pytest.mark.parametrize(('ends', 'code'), [
+    (('base', '::a'), 'JOINT_CHILD_LINK_INVALID'), (('::a', 'base'), 'JOINT_PARENT_LINK_INVALID')])
+def test_end_that_begins_with_two_colons_is_not_found(ends, code):
+    links = '<link name="base"/><link name="::a"/>'
+    assert codes_of(model_file(links + fixed_joint('j', *ends), version='1.6')) == [code]
+
+
 @at_every_depth
 @pytest.mark.parametrize(('child', 'code', 'words'), [
     ('zzz', 'JOINT_CHILD_LINK_INVALID', '"zzz"'),

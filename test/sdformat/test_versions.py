@@ -167,6 +167,7 @@ def world(content, version='1.7'):
     ('<link name="n::l"><visual name="v"><pose relative_to="base"/><geometry/></visual></link>',
      'CONVERSION_ERROR'),
     ('<link name="n::l"><pose relative_to="base"/></link>', 'POSE_RELATIVE_TO_INVALID'),
+    ('<model name="::n"><link name="l"/></model>', 'CONVERSION_ERROR'),
 ])
 def test_reference_from_a_nested_model_to_outside_cannot_be_converted(content, code):
     assert codes_of(world(f'<link name="base"/>{content}')) == [code]
