@@ -36,7 +36,7 @@ from rclpy.task import Future
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.ros.background import result_from_executor, wake
 from sdf_pose_bridge.ros.cdr import NANOSECONDS
-from sdf_pose_bridge.ros.log_lines import line_about_unreported, names_in_line, Unreported
+from sdf_pose_bridge.ros.log_lines import line_about_unreported, Unreported
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
 from sdf_pose_bridge.ros.state_messages import Effect, Effects, Message, StateSource
@@ -109,9 +109,8 @@ class JointStates:
         self._now_ns = 0
         self._is_simulated = self._has_jumped = False
         self._has_moved = self._has_reported_missing = False
-        # The name of the source of each model, and the models that have several.
-        self._sources_of_models: dict[str, str] = {}
-        self._models_of_several: set[str] = set()
+        # The names of the sources of each model, two at most.
+        self._sources_of_models: dict[str, list[str]] = {}
         self._start_frames()
         self._end_period()
         self._thread = threading.Thread(target=self._run, name='joint states', daemon=True)
@@ -164,14 +163,15 @@ class JointStates:
 
     @property
     def unreported(self) -> Unreported:
-        """The joints and models that no message has named in time."""
+        """The joints and models that no message has named in time, or whose stamps are old."""
         target = self._next_target
         positions = target.frames.positions
         joints, models = ([], []) if self._end_grace in self._due else positions.unreported()
         topics = [
             topic.name for topic in self._sources.joint_state_topics
             if not positions.unknown(joints[:1], topic.model)] if joints else []
-        return Unreported(len(joints), (*joints, '')[0], topics, models)
+        late = [each.late for each in target.sources if each.late]
+        return Unreported(len(joints), (*joints, '')[0], topics, models, late)
 
     def _follow_sources(self, target: _Target | None = None) -> None:
         """Follow all sources. The executor alone does this, as it may find a new one itself."""
@@ -254,6 +254,8 @@ class JointStates:
         target = self._target
         self._effects = Effects(target.frames, target.lookup, target.settings.model_pose_frames)
         self._waiting = _NO_ROWS
+        for each in target.sources:
+            each.late = ''
         now = time.monotonic()
         self._due[self._publish_all] = self._due[self._publish_at_rest] = now
         if not self._has_reported_missing:
@@ -327,7 +329,8 @@ class JointStates:
             models = ' and models' if positions.free_models else ''
             self._logger.info(f'all joints{models} have been reported now')
         if values.ndim > 1:
-            self._note_source(positions.names[effect.selection.changed[0]], source.name)
+            source.note_model(
+                positions.names[effect.selection.changed[0]], self._sources_of_models)
         rows = self._effects.rows(effect)
         if len(rows) and not self._has_moved:
             self._has_moved = True
@@ -335,16 +338,12 @@ class JointStates:
             self._logger.info(
                 f'following {source.name}' if count == 1 else
                 f'following {count} sources; the first message is on {source.name}')
-        return target.frames.stamp(rows, stamp_ns, ignore_stamps=ignores_stamps)
-
-    def _note_source(self, model: str, source: str) -> None:
-        """Report a model whose poses come from several sources, once."""
-        other = self._sources_of_models.setdefault(model, source)
-        if other != source and model not in self._models_of_several:
-            self._models_of_several.add(model)
-            self._logger.warning(
-                f'poses of {names_in_line([model])} come from {other} and from {source}; the one '
-                'with the newest stamp counts')
+        moved = target.frames.stamp(rows, stamp_ns, ignore_stamps=ignores_stamps)
+        if len(moved):
+            self._effects.end_lateness(message)
+        elif len(rows):
+            self._effects.note_lateness(message, stamp_ns)
+        return moved
 
     # Publication
 

@@ -195,6 +195,10 @@ class PublishedMovingFrames:
         self._transforms.set_stamps(stamp_ns, rows)
         return rows
 
+    def last_stamp_ns(self, rows: NDArray[np.intp]) -> int:
+        """Return the last stamp that all of some moving transforms have reached."""
+        return int(self._stamps_ns[rows].min())
+
     def forget_stamps(self) -> None:
         """Accept any stamp next, after time has jumped back."""
         self._stamps_ns[:] = self._newest_ns = NEVER

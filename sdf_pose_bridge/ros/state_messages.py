@@ -19,7 +19,7 @@ from rclpy.subscription import Subscription
 from sdf_pose_bridge.geometry.poses import Pose, pose_product
 from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.names import hint_from_names
-from sdf_pose_bridge.ros.cdr import SerializedNames, StampedPose
+from sdf_pose_bridge.ros.cdr import NANOSECONDS, SerializedNames, StampedPose
 from sdf_pose_bridge.ros.log_lines import names_in_line
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
 from sdf_pose_bridge.tf.joint_positions import LARGEST_POSITION, Selection
@@ -33,6 +33,13 @@ BYTES_OF_OBJECTS = 2_000
 
 MOST_OFF_UNIT = 0.01
 """Largest difference of the norm of a quaternion from 1; it is made 1."""
+
+LATE_S = 1.0
+"""Time in s after which messages with old stamps are reported, if they still move nothing."""
+
+_LEAST_AGE_NS = 1_000_000
+"""Smallest difference that makes a stamp old. Stamps are the same while a simulation pauses, and
+one nanosecond newer after a reload."""
 
 _MOST_REPORTED = 1000
 """Largest number of names that a source keeps because it has reported them."""
@@ -52,6 +59,11 @@ class Effect:
     """The moving transforms to publish."""
     reported_count: int = -1
     """Number of reported degrees of freedom when these were found; -1 if they were not."""
+    late_after_ns: int = 0
+    """The stamp of the transforms that the last message could not move, as its own is older; 0 if
+    it has moved them."""
+    late_since: float = 0.0
+    """Monotonic time in s since which there have been only such messages and this stamp."""
 
 
 class Message(NamedTuple):
@@ -81,6 +93,10 @@ class StateSource:
         self.name = name
         self.last_ns = 0
         """Time of the node when the last message was used; the caller sets it."""
+        self.late = ''
+        """A line about messages that move nothing, as their stamps are old; or empty."""
+        self.late_dofs: list[int] = []
+        """The degrees of freedom that they would move."""
         self._logger = node.get_logger()
         self._warnings_due: dict[str, float] = {}
         self._reported_names: set[str] = set()
@@ -105,6 +121,26 @@ class StateSource:
             self.warn('values', lambda: (
                 f'{self.name} has values for {names_in_line(names)} that are not finite or '
                 f'beyond {LARGEST_POSITION:g}; the last ones are kept'))
+
+    def note_model(self, model: str, sources_of_models: dict[str, list[str]]) -> None:
+        """Log that the poses of a model come from several sources, once."""
+        sources = sources_of_models.setdefault(model, [self.name])
+        if len(sources) == 1 and sources[0] != self.name:
+            sources.append(self.name)
+            self._logger.warning(
+                f'poses of {names_in_line([model])} come from {sources[0]} and from {self.name}; '
+                'the one with the newest stamp counts')
+
+    def begin_lateness(self, line: str, dofs: list[int]) -> None:
+        """Log that messages move nothing, as their stamps are old."""
+        self.late, self.late_dofs = line, dofs
+        self.warn('stamps', lambda: line)
+
+    def end_lateness(self, dofs: list[int]) -> None:
+        """Log that messages move something again, if they are those that moved nothing."""
+        if dofs == self.late_dofs:
+            self.late = ''
+            self._logger.info(f'messages from {self.name} move frames again')
 
     def warn(self, about: str, text: Callable[[], str]) -> bool:
         """Log a warning, unless the last one about the same was not long ago."""
@@ -262,6 +298,33 @@ class Effects:
             return message.values
         frame = self._lookup.pose_beside(message.frame_id, message.effect.selection.changed[0])
         return np.array([pose_product(frame, Pose(*message.values[0].tolist()))])
+
+    def note_lateness(self, message: Message, stamp_ns: int) -> None:
+        """
+        Report messages whose stamps are old, if nothing has moved their transforms for a time.
+
+        :param message: one that moves nothing.
+        :param stamp_ns: its stamp, or the time of the node, in nanoseconds.
+        """
+        source, effect, now = message.source, message.effect, time.monotonic()
+        last_ns = self._frames.last_stamp_ns(effect.rows)
+        if last_ns - stamp_ns < _LEAST_AGE_NS or last_ns != effect.late_after_ns:
+            # Others may move them, such as a second publisher with newer stamps.
+            effect.late_since, effect.late_after_ns = now, last_ns
+        elif not source.late and now - effect.late_since > LATE_S:
+            dofs = effect.selection.changed
+            source.begin_lateness(
+                f'messages from {source.name} move nothing, for example '
+                f'{names_in_line([self.positions.names[dofs[0]]])}: their stamps are '
+                f'{(last_ns - stamp_ns) / NANOSECONDS:.3f} s older than the last one; set the '
+                'clock of the publisher, and restart this node if that stamp was wrong, or set '
+                'ignore_timestamp:=true', dofs)
+
+    def end_lateness(self, message: Message) -> None:
+        """Note that a message moves something."""
+        message.effect.late_after_ns = 0
+        if message.source.late:
+            message.source.end_lateness(message.effect.selection.changed)
 
     def _make_room(self, size: int) -> None:
         """Forget everything if it would be too much."""

@@ -29,6 +29,7 @@ from sdf_pose_bridge.ros.joint_states import (
 )
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
+from sdf_pose_bridge.ros.state_messages import LATE_S
 from sdf_pose_bridge.ros.topic_names import StateTopics
 from sdf_pose_bridge.tf.joint_positions import JointPositions, UnreportedJoints
 from sdf_pose_bridge.tf.lookup import PoseLookup
@@ -238,6 +239,51 @@ def test_joints_that_stay_unreported_are_counted_once_and_then_that_none_is(foll
     log = capfd.readouterr().err
     assert log.count('2 joints have not been reported yet, for example "grip"') == 1
     assert log.count('all joints have been reported now') == 1
+
+
+def test_stamps_that_go_back_are_reported_once_and_that_they_are_newer_again(arm, capfd):
+    arm.published((FIRST + 100, {'turn': 0.5}))
+
+    def is_late():
+        # Messages with other names go on.
+        nonlocal sec
+        sec += 1
+        arm.send(FIRST + 50, {'turn': 0.1})
+        arm.send(sec, {'lift': 0.1})
+        arm.spin(0.05)
+        return arm.states.unreported.late
+
+    sec = FIRST + 100
+    arm.wait(is_late)
+    line = (
+        'messages from /joint_states move nothing, for example "turn": their stamps are 50.000 s '
+        'older than the last one;')
+    arm.send(FIRST, {'turn': 0.1})
+    arm.published((sec + 1, {'lift': 0.1}))
+    assert arm.states.unreported.late[0].startswith(line)
+    sec += 1
+    arm.published((sec + 1, {'turn': 0.5}))
+    assert arm.states.unreported.late == []
+    log = capfd.readouterr().err
+    assert log.count(line) == 1
+    assert log.count('messages from /joint_states move frames again') == 1
+
+
+@pytest.mark.parametrize(('rule', 'newer', 'older'), [
+    (EACH, 1, 0), (EACH, 0, 0), (rule_of(0.0, ignore_timestamp=True), 0, -5)],
+    ids=['two publishers', 'a pause', 'ignored'])
+def test_stamps_that_do_not_stop_a_frame_are_not_reported(following, rule, newer, older):
+    following.start(rule=rule)
+    following.connect()
+    following.published((FIRST, {'turn': 0.5}))
+    ends_at = time.monotonic() + 2.0 * LATE_S
+    sec = FIRST
+    while time.monotonic() < ends_at:
+        sec += newer
+        following.send(sec, {'turn': 0.5, 'lift': 0.5} if newer else {'turn': 0.5})
+        following.send(sec - newer + older, {'turn': 0.5})
+        following.spin(0.05)
+        assert not following.states.unreported.late
 
 
 def test_a_message_without_a_stamp_gets_the_time_of_the_node(arm):
