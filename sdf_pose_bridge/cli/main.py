@@ -23,7 +23,7 @@ from sdf_pose_bridge.cli import set as set_command
 from sdf_pose_bridge.cli.printing import CommandError, discard_output, print_problems
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.formats import PoseFormatError
-from sdf_pose_bridge.names import hint_from_names, printable
+from sdf_pose_bridge.names import hint_from_names, NameIndex, printable
 from sdf_pose_bridge.process_limits import FOR_FILES, limited, LimitExceededError
 
 _NEGATIVE_NUMBER = re.compile(
@@ -111,7 +111,10 @@ class _Parser(argparse.ArgumentParser):
         """Parse arguments, all of which must be known: a command prints its own usage."""
         found, unknown = super().parse_known_args(args, namespace)
         if unknown:
-            hint = hint_from_names(unknown[0], self._option_string_actions)
+            # The dashes would make short names look alike.
+            names = [option.removeprefix('--') for option in self._option_string_actions]
+            nearest = NameIndex(names).nearest(unknown[0].removeprefix('--'))
+            hint = f'; did you mean "--{nearest}"?' if nearest else ''
             self.error(f'unrecognized arguments: {" ".join(unknown)}{hint}')
         return found, unknown
 

@@ -157,7 +157,8 @@ def warnings_about_unknown_parameters(
     hints = {
         name: hint_from_names(name, DECLARATIONS) for name in given
         if name not in DECLARATIONS and not node.has_parameter(name)
-        and not name.startswith(QOS_OVERRIDES) and name not in known_elsewhere}
+        and not name.startswith(QOS_OVERRIDES) and name not in known_elsewhere
+        and not _reason_without_effect(name)}
     return [
         f'there is no parameter "{name}", so it has no effect{hint}'
         for name, hint in hints.items() if hint or not known_elsewhere
@@ -167,7 +168,9 @@ def warnings_about_unknown_parameters(
 
 
 def _reason_without_effect(name: str) -> str:
-    """Return why the quality of service of a topic cannot be overridden; empty if it can."""
+    """Return why a parameter of robot_state_publisher changes nothing here; else empty."""
+    if name == 'description_from_topic':
+        return 'set robot_description to the text, or sdf_file to a file'
     parts = name.removeprefix(QOS_OVERRIDES).rsplit('.', 2)
     topic = parts[0]
     last = topic.rpartition('/')[2]

@@ -305,7 +305,8 @@ _CONTENTS = {
     'velocity_decay': 'linear,angular:double',
     'velocity_sensing/horizontal,velocity_sensing/vertical': 'noise',
     'vertical': 'samples!:uint resolution,min_angle!,max_angle!:double',
-    'waypoint': 'time!:double pose!:pose',
+    'waypoint': 'time!:double pose!=waypoint_pose',
+    'waypoint_pose': '!:pose',
     'wind': 'linear_velocity:vector3',
     'xyz': '!:axis @expressed_in^',
 }

@@ -87,7 +87,9 @@ def _cure(language: _Language, path: str) -> str:
     made = next((path.removesuffix(each) for each in language.suffixes if path.endswith(each)), '')
     file = (f'"{Path(made).name}" beside it' if made and Path(made).is_file()
             else 'the file that it writes')
-    return f'is for {language.name}; run {language.name} first, and read {file}'
+    sources = [f'{path}{each}' for each in language.suffixes if Path(f'{path}{each}').is_file()]
+    source = f' on "{Path(sources[0]).name}" beside it' if sources else ''
+    return f'is for {language.name}; run {language.name}{source} first, and read {file}'
 
 
 def _values(xml: XmlElement) -> Iterator[tuple[str, str]]:

@@ -346,6 +346,13 @@ def test_an_override_without_effect_is_told(make_node, name, possible):
     assert warning.endswith(f', one can override {possible}')
 
 
+def test_a_description_from_a_topic_is_told_to_have_no_effect(make_node):
+    (warning,) = warnings_about_unknown_parameters(
+        make_node('bridge', '-p', 'description_from_topic:=true'), ['use_tf_static'])
+    assert warning == ('parameter description_from_topic has no effect here; set '
+                       'robot_description to the text, or sdf_file to a file')
+
+
 @pytest.mark.parametrize('name', [
     '/joint_states.subscription.reliability', '/tf_static.publisher.depth',
     '/scan.subscription.depth', '/tf', 'x'])

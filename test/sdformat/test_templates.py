@@ -137,6 +137,13 @@ def test_the_file_beside_a_template_is_named(tmp_path):
     assert error.message.endswith('run Jinja first, and read "a.sdf" beside it')
 
 
+def test_the_template_beside_a_file_is_named(tmp_path):
+    (tmp_path / 'a.sdf.jinja').touch()
+    (tmp_path / 'a.sdf').write_text('{{ a }}')
+    (error,) = errors_of_file(tmp_path / 'a.sdf')
+    assert 'run Jinja on "a.sdf.jinja" beside it first' in error.message
+
+
 @pytest.mark.parametrize(('content', 'found'), [
     ('<link name="@(n)"/>', 'name="@(n)" of <link> is for EmPy'),
     ('<link name="a{{ n }}"/>', 'name="a{{ n }}" of <link> is for Jinja'),

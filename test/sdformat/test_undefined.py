@@ -66,6 +66,10 @@ def messages_of(text):
      'static="true" of <model> is not defined in SDFormat; it is an element: <static>'),
     (link_with('<pose frame="l"/>'),
      'frame="l" of <pose> is not defined in SDFormat; since version 1.7 it is relative_to'),
+    (world_file('<actor name="a"><skin><filename>f</filename></skin><script><trajectory id="0" '
+                'type="t"><waypoint><time>0</time><pose frame="x">0 0 0 0 0 0</pose></waypoint>'
+                '</trajectory></script></actor>', version='1.6'),
+     'frame="x" of <pose> is not defined in SDFormat'),
     (link_with('<inertial><pose relative_to="l"/></inertial>'),
      'relative_to="l" of <pose> is not defined in SDFormat; an inertial is placed in its link'),
     (model_file(LINK + '<plugin name="p" filename="f" file="g"/>'),
