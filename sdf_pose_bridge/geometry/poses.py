@@ -40,6 +40,10 @@ class Pose(NamedTuple):
     qw: float = 1.0
 
 
+OPTICAL_POSE = Pose(0.0, 0.0, 0.0, -0.5, 0.5, -0.5, 0.5)
+"""Pose of an optical frame (REP 103: z forward, x right, y down) in its camera (x forward)."""
+
+
 def pose_product(a: Pose, b: Pose) -> Pose:
     """
     Chain two poses.

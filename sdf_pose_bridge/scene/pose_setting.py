@@ -4,27 +4,30 @@
 Find the change of a file that moves an element to a pose.
 
 No rule of SDFormat is implemented here: the scene has the ``<pose>`` that places the element and
-its reference, and the new numbers are checked by reading the changed file.
+its reference, and the new numbers are checked by reading the changed file. URDF is not changed, as
+most of it is made by xacro: an error says which ``<origin>`` the file needs.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 import os
 from pathlib import Path
 from typing import NamedTuple, TypeAlias
 
+from lxml import etree
 import numpy as np
 
 from sdf_pose_bridge.errors import Place, PoseNotSetError, SdfError
 from sdf_pose_bridge.geometry.poses import (
     distance_and_angle,
+    OPTICAL_POSE,
     Pose,
     pose_inverse,
     pose_product,
     relative_pose,
 )
-from sdf_pose_bridge.geometry.rotations import canonical_quaternion
+from sdf_pose_bridge.geometry.rotations import canonical_quaternion, rpy_from_quaternion
 from sdf_pose_bridge.names import quoted_names
 from sdf_pose_bridge.scene.comparison import TOLERANCE
 from sdf_pose_bridge.scene.scene import Scene
@@ -32,10 +35,18 @@ from sdf_pose_bridge.sdformat.file_change import FileChange
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.limits import Usage
-from sdf_pose_bridge.sdformat.pose_writing import PoseText
-from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
+from sdf_pose_bridge.sdformat.pose_writing import PoseText, shortest_decimal
+from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.urdf.robot import robot_from_tree, RobotJoint
+from sdf_pose_bridge.sdformat.xml_file import bytes_from_file, xml_from_bytes, XmlFile
 
 _MOST_ATTEMPTS = 4
+
+_ORIGIN_ERROR = 5e-7
+"""Largest error of the numbers of an ``<origin>``, in metres and radians."""
+
+_OPTICAL_TOLERANCE = 2e-3
+"""Largest difference of an optical frame from ``OPTICAL_POSE``, as files round right angles."""
 
 Load: TypeAlias = Callable[[Mapping[str, bytes]], Scene]
 """Reads the scene with other texts instead of some of its files."""
@@ -95,7 +106,11 @@ def _change_of_own_pose(
     if cache in Path(os.path.realpath(path)).parents:
         msg = 'the file is in the cache of Gazebo Fuel; copy the model and include the copy'
         raise PoseNotSetError(msg, Place(path))
-    text = PoseText(bytes_from_file(path, Usage()), path)
+    content = bytes_from_file(path, Usage())
+    file = xml_from_bytes(content, path)
+    if file.root.tag == 'robot':
+        raise _error_with_origin(scene, element, asked, measure, load, path, file)
+    text = PoseText(content, path)
     marked = load({path: text.with_a_line_for_each_tag()})
     if marked.names != scene.names or not np.array_equal(marked.poses, scene.poses):
         msg = 'the file has changed since it was read'
@@ -174,12 +189,67 @@ def _check_instances(
 def _check_joints(scene: Scene, element: int, in_reference: Pose, at: Place) -> None:
     reference = int(scene.references[element])
     expected = scene.relative_pose_of(element, reference)
-    size_m = float(np.abs(scene.poses[:, :3]).max())
-    if max(distance_and_angle(in_reference, expected)) > TOLERANCE * (1.0 + size_m):
+    if max(distance_and_angle(in_reference, expected)) > TOLERANCE * (1.0 + _size_m(scene)):
         msg = (f'a joint has moved "{scene.names[element]}" away from "{scene.names[reference]}", '
                'which its pose in the file is relative to; move the joint back, or set the pose '
                'of another frame')
         raise PoseNotSetError(msg, at)
+
+
+def _error_with_origin(
+    scene: Scene, element: int, asked: Pose, measure: Measure, load: Load, path: str,
+    file: XmlFile,
+) -> PoseNotSetError:
+    """Find the ``<origin>`` of a joint of URDF that moves an element to a pose."""
+    sources = Sources()
+    sources.add_path(path)
+    sources.add_tree(path, file.root, file.lines)
+    robot = robot_from_tree(file.root, sources, is_included=scene.urdf_root is None)
+    name = scene.own_name(element)
+    scope = scene.names[element].removesuffix(name)
+    old = measure(scene, element)
+    for joint in _joints_to_move(name, robot.parent_joints):
+        parent = scope + joint.parent
+        # The link "world" is the frame of the model.
+        in_asked = measure(scene, scene.index(parent, world=scene.world_of(element)) if (
+            scene.has(parent)) else int(scene.parents[element]))
+        # The element keeps its pose in the frame that the origin places.
+        in_element = pose_product(pose_inverse(relative_pose(in_asked, old)), joint.origin)
+        pose = pose_product(relative_pose(in_asked, asked), in_element)
+        words = [shortest_decimal(number, _ORIGIN_ERROR) for number in (
+            *pose[:3], *rpy_from_quaternion(pose[3:]))]
+        origin = etree.Element('origin', xyz=' '.join(words[:3]), rpy=' '.join(words[3:]))
+        # Of two, the first one counts.
+        joint.xml.insert(0, origin)
+        new = load({path: etree.tostring(file.root)})
+        joint.xml.remove(origin)
+        difference = max(distance_and_angle(measure(new, element), asked))
+        if difference <= 10.0 * _ORIGIN_ERROR * (1.0 + _size_m(scene)):
+            msg = (f'poses are not set in URDF; this one needs joint "{joint.xml.get("name")}": '
+                   f'{etree.tostring(origin).decode()}')
+            return PoseNotSetError(msg, sources.place(joint.xml))
+    msg = f'this is URDF, and no <origin> of a joint in it puts "{scene.names[element]}" there'
+    return PoseNotSetError(msg, scene.place(element))
+
+
+def _joints_to_move(name: str, joints: Mapping[str, RobotJoint]) -> Sequence[RobotJoint]:
+    """
+    Find the joints that can move a link or a joint; for an optical frame first its camera's.
+
+    :param joints: the joints by the names of their child links.
+    """
+    joint = joints.get(name) or next((each for each in joints.values() if each.name == name), None)
+    found: list[RobotJoint] = []
+    while joint is not None and (not found or joint.type == 'fixed'):
+        found.insert(0, joint)
+        is_optical = joint.type == 'fixed' and max(
+            distance_and_angle(joint.origin, OPTICAL_POSE)) < _OPTICAL_TOLERANCE
+        joint = joints.get(joint.parent) if is_optical else None
+    return found
+
+
+def _size_m(scene: Scene) -> float:
+    return float(np.abs(scene.poses[:, :3]).max())
 
 
 def are_close(a: Pose, b: Pose) -> bool:

@@ -55,9 +55,6 @@ class PoseText:
         for warning in file.warnings:
             msg = f'{warning.message}; correct this before a pose is set in the file'
             raise PoseNotSetError(msg, warning.place)
-        if root.tag == 'robot':
-            msg = 'this is URDF, in which no pose can be set; convert the file to SDFormat first'
-            raise PoseNotSetError(msg, place)
         if version_from_text(root.get('version', ''), place) < _FIRST_WITH_POSE:
             msg = (f'this is SDFormat {root.get("version")}, which writes poses in another way; '
                    f'convert the file to {_FIRST_WITH_POSE} or newer first')
@@ -215,14 +212,14 @@ def _words_from_pose(
         unit = degrees_from_radians(1.0) if pose_format.is_degrees else 1.0
         numbers += [
             (angle * unit, tolerance / 4.0 * unit) for angle in rpy_from_quaternion(pose[3:])]
-    words = [_shortest(*each) for each in numbers]
+    words = [shortest_decimal(*each) for each in numbers]
     for index, (old, (number, most)) in enumerate(zip(old_words, numbers, strict=False)):
         if abs(number_from_word(old)[0] - number) <= most or (keeps_rotation and index >= 3):
             words[index] = old
     return words
 
 
-def _shortest(number: float, tolerance: float) -> str:
+def shortest_decimal(number: float, tolerance: float) -> str:
     """Return the decimal with the fewest digits that differs by no more than a tolerance."""
     text = next(
         text for digits in count()

@@ -20,6 +20,7 @@ from sdf_pose_bridge.geometry.poses import (
     canonical_poses,
     canonical_relative_poses,
     distance_and_angle,
+    OPTICAL_POSE,
     Pose,
     pose_product,
     PoseArray,
@@ -34,9 +35,6 @@ from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT, TfParents
 
 OPTICAL_SUFFIX = '_optical'
 """Appended to a camera's frame id for its optical frame, unless the file names that frame."""
-
-OPTICAL_POSE = Pose(0.0, 0.0, 0.0, -0.5, 0.5, -0.5, 0.5)
-"""Pose of an optical frame (REP 103: z forward, x right, y down) in its camera (x forward)."""
 
 LINK_SUFFIX = '_frame'
 """Appended to the name of a joint for the name of such a link."""

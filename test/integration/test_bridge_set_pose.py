@@ -11,6 +11,7 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 from changes import BRIDGE, listen_to_tf, reason_for_refusal, wait_for_x
 from geometry_msgs.msg import PoseStamped
 from listener import JointPublisher
+import urdf_texts
 
 from sdf_pose_bridge import load
 from sdf_pose_bridge_interfaces.srv import LookupPose, SetPose
@@ -20,13 +21,18 @@ ARM = """<sdf version="1.11"><world name="w"><model name="arm"><static>false</st
 <joint name="turn" type="revolute"><pose relative_to="base"/><parent>base</parent>
   <child>tool</child><axis><xyz>0 0 1</xyz></axis></joint></model>
 <frame name="fixture"><pose>5 0 0 0 0 0</pose></frame>
-<include><uri>gauge.sdf</uri></include></world></sdf>"""
+<include><uri>gauge.sdf</uri></include><include><uri>rig.urdf</uri></include></world></sdf>"""
 GAUGE = """<sdf version="1.11"><model name="gauge"><static>true</static><link name="body"/>
 <frame name="zero"><pose>0 0 0 0 0 0</pose></frame></model></sdf>"""
+
+RIG = urdf_texts.robot(
+    urdf_texts.link('post') + urdf_texts.link('camera')
+    + urdf_texts.joint('mount', 'post', 'camera'))
 
 
 @pytest.fixture(name='path')
 def write_files(tmp_path):
+    (tmp_path / 'rig.urdf').write_text(RIG, encoding='utf-8')
     (tmp_path / 'gauge.sdf').write_text(GAUGE, encoding='utf-8')
     path = tmp_path / 'cell.sdf'
     path.write_text(ARM, encoding='utf-8')
@@ -70,6 +76,9 @@ def test_measured_poses_go_into_the_files(
     answer = ask(client, 'gauge/zero', 0.25)
     assert (answer.success, answer.file) == (True, str(path.with_name('gauge.sdf')))
     wait_for_x(observer, 0.25, 'gauge/zero')
+    refused = ask(client, 'r/camera', 0.125, 'r/post')
+    assert not refused.success
+    assert 'joint "mount": <origin xyz="0.125 0 0" rpy="0 0 0"/>' in refused.message
     refused = ask(client, 'arm/tol', 0.0)
     assert not refused.success
     assert 'did you mean "arm/tool"' in refused.message

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a file must say so that an element is at a pose."""
 
+from lxml import etree
 import numpy as np
 import pytest
 from sdf_texts import fixed_joint, model_file, posed, world_file, write_files
@@ -17,6 +18,14 @@ MODEL = model_file(posed('link', 'a', '1 0 0 0 0 0') + posed('frame', 'f', '0 1 
 TWICE = world_file(
     '<include><uri>m.sdf</uri><name>x</name><pose>5 0 0 0 0 0</pose></include>\n'
     '<include><uri>m.sdf</uri><name>y</name></include>')
+
+ROBOT = urdf_texts.robot(
+    ''.join(map(urdf_texts.link, ('base', 'arm', 'eye', 'optical')))
+    + urdf_texts.joint(
+        'turn', 'base', 'arm', 'continuous', urdf_texts.origin('0 1 0', '0 0 0.5'))
+    + urdf_texts.joint('mount', 'arm', 'eye')
+    + urdf_texts.joint('rep103', 'eye', 'optical', 'fixed', urdf_texts.origin(
+        rpy='-1.5708 0 -1.5708')))
 
 
 @pytest.fixture(name='change')
@@ -131,7 +140,8 @@ def test_a_pose_that_parameters_forbid_is_refused(change, tmp_path, params, reas
     (MODEL, '__root__', '', 'all others are placed'),
     (world_file('<actor name="a"><skin><filename>a.dae</filename></skin></actor>'), 'a', '',
      'it is an actor'),
-    (f'<robot name="m">{urdf_texts.link("a")}</robot>', 'm::a', '', 'URDF'),
+    (f'<robot name="m">{urdf_texts.link("a")}</robot>', 'm::a', '', 'no <origin> of a joint'),
+    (ROBOT, 'r::eye', 'r::optical', 'no <origin> of a joint'),
     (MODEL.replace('1.9', '1.3').replace('relative_to="a"', ''), 'm::a', '', 'SDFormat 1.3'),
 ])
 def test_what_no_pose_can_say_is_refused(change, tmp_path, text, name, relative_to, reason):
@@ -145,3 +155,36 @@ def test_a_file_of_the_cache_of_fuel_is_refused(change, tmp_path, monkeypatch):
     monkeypatch.setenv('GZ_FUEL_CACHE_PATH', str(tmp_path))
     with pytest.raises(PoseNotSetError, match='cache of Gazebo Fuel'):
         change('m::a')
+
+
+@pytest.mark.parametrize(('name', 'relative_to', 'joint'), [
+    ('optical', 'base', 'mount'),
+    ('rep103', 'arm', 'mount'),
+    # The camera cannot be moved in itself.
+    ('optical', 'eye', 'rep103'),
+    ('eye', 'base', 'mount'),
+    ('arm', '', 'turn'),
+])
+@pytest.mark.parametrize('is_included', [False, True])
+def test_the_origin_that_urdf_needs_is_named(
+        change, tmp_path, name, relative_to, joint, is_included):
+    path = tmp_path / 'm.sdf'
+    path.write_text(ROBOT)
+    write_files(tmp_path, w=world_file('<include><uri>m.sdf</uri></include>'))
+    names = [f'r::{each}' if each else '' for each in (name, relative_to)]
+    with pytest.raises(PoseNotSetError) as caught:
+        change(*names, file='w' if is_included else 'm')
+    assert f'joint "{joint}": ' in caught.value.message
+    assert (path.read_text(), caught.value.place.file) == (ROBOT, str(path))
+    robot = etree.fromstring(ROBOT)
+    xml = robot.find(f'joint[@name="{joint}"]')
+    xml.insert(0, etree.fromstring(caught.value.message.partition('": ')[2]))
+    path.write_bytes(etree.tostring(robot))
+    between = canonical_relative_pose(load(path).pose(*names), ASKED)
+    np.testing.assert_allclose(between[:6], 0.0, atol=3e-6)
+
+
+def test_a_joint_that_moves_stays_where_an_optical_frame_is_measured(change, tmp_path):
+    write_files(tmp_path, m=ROBOT.replace('"fixed"', '"continuous"', 1))
+    with pytest.raises(PoseNotSetError, match='joint "rep103"'):
+        change('r::optical', 'r::base')
