@@ -188,3 +188,9 @@ def test_a_joint_that_moves_stays_where_an_optical_frame_is_measured(change, tmp
     write_files(tmp_path, m=ROBOT.replace('"fixed"', '"continuous"', 1))
     with pytest.raises(PoseNotSetError, match='joint "rep103"'):
         change('r::optical', 'r::base')
+
+
+def test_a_joint_with_the_name_of_a_link_is_named_as_in_the_file(change, tmp_path):
+    write_files(tmp_path, m=ROBOT.replace('"mount"', '"eye"'))
+    with pytest.raises(PoseNotSetError, match='joint "eye": '):
+        change('r::eye_joint', 'r::base')
