@@ -83,8 +83,8 @@ def status_from_scene(
     :param failure: the errors of the last load; empty if it succeeded.
     :param unreported: the joints and models whose positions or poses are missing.
     :return: ERROR if the last load failed, so that the scene before it is still published; WARN if
-        the scene has warnings, or joints or models that are not reported or not in time; otherwise
-        OK.
+        the scene has warnings, or joints or models that are not reported, or topics have
+        problems; otherwise OK.
     """
     warnings = loaded.warnings
     loaded_at = datetime.datetime.fromtimestamp(
@@ -104,14 +104,14 @@ def status_from_scene(
         'first joint not reported': unreported.first,
         'models not reported': str(len(unreported.models)),
         'first model not reported': next(iter(unreported.models), ''),
-        'sources with old stamps': str(len(unreported.late)),
+        'problems of topics': str(len(unreported.problems)),
     }
     if failure:
         level = DiagnosticStatus.ERROR
         text = f'the last load failed, the scene before it is published: {failure[0]}'
-    elif unreported.late:
+    elif unreported.problems:
         level = DiagnosticStatus.WARN
-        text = '; '.join(unreported.late)
+        text = '; '.join(unreported.problems)
     elif unreported.number or unreported.models:
         level = DiagnosticStatus.WARN
         text = line_about_unreported(unreported)

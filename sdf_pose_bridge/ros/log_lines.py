@@ -36,8 +36,8 @@ class Unreported(NamedTuple):
     """The full names of the topics on which messages can name it."""
     models: Sequence[str] = ()
     """The names of the models."""
-    late: Sequence[str] = ()
-    """A line for each source of messages whose stamps are older than the last ones."""
+    problems: Sequence[str] = ()
+    """A line for each source of messages with old stamps, and for other publishers of frames."""
 
 
 def lines_from_error(error: Exception) -> list[str]:

@@ -36,6 +36,7 @@ from sdf_pose_bridge.ros.log_lines import (
     lines_from_warnings,
     Unreported,
 )
+from sdf_pose_bridge.ros.other_publishers import OtherPublishers, OTHERS_PERIOD_S
 from sdf_pose_bridge.ros.parameters import Settings, SettingsError
 from sdf_pose_bridge.ros.published_frames import frames_from_scene, PublishedFrames
 from sdf_pose_bridge.ros.publishers import SwitchedPublisher, Topic
@@ -90,8 +91,8 @@ class SdfPoseBridge:
         self._loaded = loaded
         self._reader = reader
         self._joint_states: JointStates | None = None
-        self._diagnostics = Diagnostics(
-            node, lambda: self._joint_states.unreported if self._joint_states else Unreported())
+        self._diagnostics = Diagnostics(node, self._unreported)
+        self._others = OtherPublishers(node)
         self._has_told_of_joints = False
         self._follower = FileFollower(loaded)
         # Simulated time may stand still, so these follow the time of the computer.
@@ -99,6 +100,8 @@ class SdfPoseBridge:
             self._publish_again, _period_from_rate(settings.publish_rate))
         self._publishing_diagnostics = Periodic(self._diagnostics.publish, PERIOD_S)
         self._looking = Periodic(self._look_at_files, LOOKING_PERIOD_S)
+        self._looking_for_others = Periodic(
+            lambda: self._others.look(self._frames), OTHERS_PERIOD_S)
         self._publish(loaded, self._frames_from_scene(loaded, settings))
         result_from_executor(node, lambda: self._start_services(parameter_services))
         self._report_success()
@@ -198,7 +201,8 @@ class SdfPoseBridge:
     def _do_what_is_due(self) -> float:
         """Return the longest time in s until this has to be called again."""
         return min(
-            self._publish_what_is_due(), self._looking.call_if_due(), self._visuals.go_on())
+            self._publish_what_is_due(), self._looking.call_if_due(),
+            self._looking_for_others.call_if_due(), self._visuals.go_on())
 
     def _publish_what_is_due(self) -> float:
         """Do the same as far as it is done during a load, too."""
@@ -342,6 +346,10 @@ class SdfPoseBridge:
         self._robot_description.publish(String(data=text))
 
     # Reporting
+
+    def _unreported(self) -> Unreported:
+        found = Unreported() if self._joint_states is None else self._joint_states.unreported
+        return found._replace(problems=[*found.problems, *self._others.problems.values()])
 
     def _report_success(self) -> None:
         loaded = self._loaded

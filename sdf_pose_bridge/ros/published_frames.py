@@ -114,6 +114,7 @@ class PublishedFrames:
     def publish_tf_static(self) -> None:
         """Publish all fixed frames on ``/tf_static``."""
         self._transforms.set_stamps(self.stamp_ns)
+        self.publishers.static_stamps_ns.append(self.stamp_ns)
         self._tf_static.publish(self._transforms.tf_message())
 
     def open_topics(self) -> None:

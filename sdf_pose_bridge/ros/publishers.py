@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
@@ -39,6 +40,8 @@ class Publishers:
     def __init__(self, node: Node) -> None:
         self._node = node
         self._publishers: dict[Topic, Publisher] = {}
+        self.static_stamps_ns: deque[int] = deque(maxlen=1000)
+        """The last stamps on ``/tf_static``, in nanoseconds."""
 
     def now_ns(self) -> int:
         """Return the time of the node in nanoseconds."""

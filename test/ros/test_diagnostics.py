@@ -60,10 +60,10 @@ def test_joints_that_nobody_reports_are_a_warning(status_of):
 
 
 def test_messages_with_old_stamps_are_a_warning(status_of):
-    status = status_of(GOOD, unreported=Unreported(late=['from /a', 'from /b']))
+    status = status_of(GOOD, unreported=Unreported(problems=['from /a', 'from /b']))
     assert (status.level, status.message) == (DiagnosticStatus.WARN, 'from /a; from /b')
     values = {value.key: value.value for value in status.values}
-    assert values['sources with old stamps'] == '2'
+    assert values['problems of topics'] == '2'
 
 
 def test_a_failed_load_is_an_error_whatever_is_served(status_of):
@@ -82,7 +82,7 @@ def test_the_values_describe_what_is_served_and_what_is_wrong(status_of, tmp_pat
         'files read': '1', 'last good load': '2026-01-02T03:04:05+00:00', 'warnings': '0',
         'first warning': '', 'last error': 'first\nsecond', 'joints not reported': '0',
         'first joint not reported': '', 'models not reported': '0',
-        'first model not reported': '', 'sources with old stamps': '0'}
+        'first model not reported': '', 'problems of topics': '0'}
 
 
 def test_the_topic_is_there_while_it_is_switched_on(make_node):

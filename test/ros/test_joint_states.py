@@ -251,7 +251,7 @@ def test_stamps_that_go_back_are_reported_once_and_that_they_are_newer_again(arm
         arm.send(FIRST + 50, {'turn': 0.1})
         arm.send(sec, {'lift': 0.1})
         arm.spin(0.05)
-        return arm.states.unreported.late
+        return arm.states.unreported.problems
 
     sec = FIRST + 100
     arm.wait(is_late)
@@ -260,10 +260,10 @@ def test_stamps_that_go_back_are_reported_once_and_that_they_are_newer_again(arm
         'older than the last one;')
     arm.send(FIRST, {'turn': 0.1})
     arm.published((sec + 1, {'lift': 0.1}))
-    assert arm.states.unreported.late[0].startswith(line)
+    assert arm.states.unreported.problems[0].startswith(line)
     sec += 1
     arm.published((sec + 1, {'turn': 0.5}))
-    assert arm.states.unreported.late == []
+    assert arm.states.unreported.problems == []
     log = capfd.readouterr().err
     assert log.count(line) == 1
     assert log.count('messages from /joint_states move frames again') == 1
@@ -283,7 +283,7 @@ def test_stamps_that_do_not_stop_a_frame_are_not_reported(following, rule, newer
         following.send(sec, {'turn': 0.5, 'lift': 0.5} if newer else {'turn': 0.5})
         following.send(sec - newer + older, {'turn': 0.5})
         following.spin(0.05)
-        assert not following.states.unreported.late
+        assert not following.states.unreported.problems
 
 
 def test_a_message_without_a_stamp_gets_the_time_of_the_node(arm):

@@ -1,0 +1,128 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Notice other nodes that publish frames of this one, each of which must have one publisher."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Collection, Sequence
+import contextlib
+from functools import partial
+
+from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.subscription import Subscription
+
+from sdf_pose_bridge.ros.background import result_from_executor
+from sdf_pose_bridge.ros.cdr import poses_from_bytes
+from sdf_pose_bridge.ros.log_lines import names_in_line
+from sdf_pose_bridge.ros.published_frames import PublishedFrames, TF, TF_STATIC
+from sdf_pose_bridge.ros.publishers import Topic
+from sdf_pose_bridge.ros.wait_set import NoExecutor, take_message
+from sdf_pose_bridge.tf.tree import TfTree
+
+OTHERS_PERIOD_S = 1.0
+"""Period in s of :meth:`OtherPublishers.look`."""
+
+_MOST_WAITING = 500
+"""Largest number of messages that wait in a subscription, those of this node included."""
+
+
+class OtherPublishers:
+    """
+    Listens to other publishers of ``/tf_static``, and for a period to new ones of ``/tf``.
+
+    There are subscriptions only while there are other publishers. The loader calls it.
+    """
+
+    def __init__(self, node: Node) -> None:
+        self.problems: dict[str, str] = {}
+        """A line for each topic on which another node publishes a frame of this one."""
+        self._node = node
+        self._subscriptions: dict[Topic, Subscription] = {}
+        # The publishers and the frames of the last look; and for its subscriptions, the names of
+        # the other nodes and the parents of the frames.
+        self._last: tuple[set[bytes], TfTree] | None = None
+        self._others: dict[Topic, list[str]] = {}
+        self._parents: dict[str, str] = {}
+        self._reported: set[tuple[str, str]] = set()
+
+    def look(self, frames: PublishedFrames) -> None:
+        """
+        Read what has come since the last call, and look for other publishers.
+
+        :param frames: the frames that this node publishes.
+        """
+        others: dict[Topic, list[str]] = {}
+        gids: set[bytes] = set()
+        for topic in (TF_STATIC, TF):
+            found = self._node.get_publishers_info_by_topic(topic.name)
+            gids.update(bytes(each.endpoint_gid) for each in found)
+            name = self._node.resolve_topic_name(topic.name)
+            # The other node may have the same name.
+            own = sum(each.topic_name == name for each in self._node.publishers)
+            names = Counter(
+                f'{each.node_namespace.rstrip("/")}/{each.node_name}' for each in found)
+            names[self._node.get_fully_qualified_name()] -= own
+            others[topic] = sorted(+names)
+        if self._last == (gids, frames.tree):
+            self._read(frames.publishers.static_stamps_ns)
+            self._close([TF])
+            return
+        # Listen again, as latched messages may be about other frames of this node.
+        self._last, self._others = (gids, frames.tree), others
+        self.problems.clear()
+        self._close([TF_STATIC, TF])
+        if any(others.values()):
+            self._parents = dict(zip(frames.tree.frame_ids, frames.tree.parent_ids, strict=True))
+        for topic in [each for each, names in others.items() if names]:
+            with contextlib.suppress(RuntimeError):  # security may forbid it
+                self._subscriptions[topic] = result_from_executor(
+                    self._node, partial(_subscription, self._node, topic))
+
+    def _close(self, topics: Sequence[Topic]) -> None:
+        for topic in topics:
+            if topic in self._subscriptions:
+                result_from_executor(self._node, partial(
+                    self._node.destroy_subscription, self._subscriptions.pop(topic)))
+
+    def _read(self, own_stamps_ns: Collection[int]) -> None:
+        for topic, subscription in self._subscriptions.items():
+            for _ in range(_MOST_WAITING):
+                data = take_message(subscription)
+                if data is None:
+                    break
+                with contextlib.suppress(ValueError):  # it is too large, or not from a ROS node
+                    self._compare(topic, data, own_stamps_ns)
+
+    def _compare(self, topic: Topic, data: bytes, own_stamps_ns: Collection[int]) -> None:
+        """Report the first frame in a message of another node that this node publishes too."""
+        for pose in poses_from_bytes(data, has_child=True, is_sequence=True):
+            child, other = pose.child_frame_id.lstrip('/'), pose.frame_id.lstrip('/')
+            parent = self._parents.get(child)
+            # On /tf, another node may give the same stamps to the same frames.
+            is_own = topic is TF or pose.stamp_ns in own_stamps_ns
+            if not parent or (other == parent and is_own):
+                continue
+            names = self._others[topic]
+            line = (
+                f'frame {names_in_line([child])} is also published on {topic.name} by '
+                f'{"" if len(names) == 1 else "one of "}{names_in_line(names)}, with the parent '
+                f'{names_in_line([other])}, here with {names_in_line([parent])}; a frame must '
+                'have one publisher, so stop one of them, or set frame_prefix')
+            self.problems[topic.name] = line
+            if (topic.name, child) not in self._reported:
+                self._reported.add((topic.name, child))
+                self._node.get_logger().warning(line)
+            return
+
+
+def _subscription(node: Node, topic: Topic) -> Subscription:
+    quality = QoSProfile(depth=_MOST_WAITING, reliability=ReliabilityPolicy.BEST_EFFORT)
+    if topic.is_latched:
+        quality.reliability = ReliabilityPolicy.RELIABLE
+        quality.durability = DurabilityPolicy.TRANSIENT_LOCAL
+    return node.create_subscription(
+        topic.message_type, topic.name, lambda _: None, quality, callback_group=NoExecutor(),
+        raw=True, event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False))

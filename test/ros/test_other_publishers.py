@@ -1,0 +1,128 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Which messages of other nodes are reported, and until when."""
+
+import time
+
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2')
+
+from geometry_msgs.msg import TransformStamped
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from tf2_msgs.msg import TFMessage
+
+from sdf_pose_bridge import load_text
+from sdf_pose_bridge.ros.other_publishers import OtherPublishers
+from sdf_pose_bridge.ros.published_frames import PublishedFrames
+from sdf_pose_bridge.ros.publishers import Publishers
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
+
+ROBOT = (
+    '<sdf version="1.11"><model name="m"><link name="base"/><frame name="tool"/></model></sdf>')
+LATCHED = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+SAME_PARENT = 'frame "tool" is also published on /tf_static by "/other", with the parent "m",'
+
+
+class Looking:
+    """A node that looks, and another one that publishes."""
+
+    def __init__(self, node, other, executor, beside):
+        self.other, self._executor, self._beside = other, executor, beside
+        self.found = OtherPublishers(node)
+        self.node = node
+        self._publishers = Publishers(node)
+        self.frames = None
+        self._senders = {}
+
+    def publish(self, **options):
+        tree = tf_tree_from_scene(load_text(ROBOT), TfOptions(**options))
+        self.frames = PublishedFrames(
+            self._publishers, tree, None, {}, self.frames, has_transforms=False)
+        self.frames.publish_tf_static()
+
+    def send(self, child, parent, topic='/tf_static'):
+        if topic not in self._senders:
+            self._senders[topic] = self.other.create_publisher(
+                TFMessage, topic, LATCHED if topic == '/tf_static' else 10)
+        transform = TransformStamped(child_frame_id=child)
+        transform.header.frame_id = parent
+        self._senders[topic].publish(TFMessage(transforms=[transform]))
+
+    def stop(self):
+        for each in self._senders.values():
+            self.other.destroy_publisher(each)
+
+    def look_until(self, condition, between=lambda: None):
+        deadline = time.monotonic() + 20.0
+        while not condition():
+            assert time.monotonic() < deadline, self.found.problems
+            between()
+            self.look()
+
+    def look(self):
+        self._beside(self._executor, self.found.look, self.frames)
+        self._beside(self._executor, time.sleep, 0.1)
+
+    @property
+    def lines(self):
+        return [*self.found.problems.values()]
+
+
+@pytest.fixture(name='looking')
+def make_looking(make_node, make_executor, beside):
+    node, other = make_node('bridge'), make_node('other')
+    found = Looking(node, other, make_executor(node, other), beside)
+    found.publish()
+    return found
+
+
+@pytest.mark.parametrize(('parent', 'words'), [
+    ('m', SAME_PARENT),
+    ('/odom', 'frame "tool" is also published on /tf_static by "/other", with the parent "odom",'),
+])
+def test_a_frame_of_another_node_is_reported_once_and_until_that_node_is_gone(
+        looking, capfd, parent, words):
+    looking.send('tool', parent)
+    looking.look_until(lambda: looking.lines)
+    assert looking.lines[0].startswith(words)
+    looking.send('tool', parent)
+    looking.look()
+    looking.stop()
+    looking.look_until(lambda: not looking.lines)
+    looking.look()
+    assert capfd.readouterr().err.count(words) == 1
+    assert not list(looking.node.subscriptions)
+
+
+def test_a_frame_on_tf_is_reported_if_it_has_another_parent(looking):
+    looking.look_until(
+        lambda: looking.lines, between=lambda: looking.send('tool', 'map', '/tf'))
+    assert looking.lines[0].startswith('frame "tool" is also published on /tf by "/other"')
+
+
+def test_other_frames_and_the_own_ones_are_not_reported(looking):
+    looking.send('base', 'odom')
+    looking.send('tool_2', 'tool')
+    for _ in range(8):
+        looking.send('tool', 'm', '/tf')
+        looking.frames.publish_fixed_again()
+        looking.look()
+    assert not looking.lines
+    assert [each.topic_name for each in looking.node.subscriptions] == ['/tf_static']
+
+
+def test_after_other_frames_are_published_latched_messages_are_read_again(looking):
+    looking.send('p/tool', 'p/m')
+    for _ in range(4):
+        looking.look()
+    assert not looking.lines
+    looking.publish(frame_prefix='p/')
+    looking.look_until(lambda: looking.lines)
+    assert looking.lines[0].startswith('frame "p/tool"')
+
+
+def test_nothing_is_subscribed_to_while_the_node_is_alone(looking):
+    for _ in range(3):
+        looking.look()
+    assert not list(looking.node.subscriptions)
