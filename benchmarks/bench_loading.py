@@ -53,14 +53,21 @@ def parse_and_walk(paths):
 what, small, *paths = sys.argv[1:]
 load(small)
 parse_and_walk([small])
-begin = time.perf_counter()
-if what == 'load':
-    load(paths[0])
-else:
-    parse_and_walk(paths)
-print(time.perf_counter() - begin)
+times = []
+while sum(times) < 3.0:
+    begin = time.process_time()
+    if what == 'load':
+        load(paths[0])
+    else:
+        parse_and_walk(paths)
+    times.append(time.process_time() - begin)
+print(min(times))
 """
-"""Prints the seconds of a load or of its yardstick, with the time to free the result."""
+"""
+Prints the seconds of processor time of a load or of its yardstick, with that to free the result.
+
+It is the least of as many as 3 s allow, so imports, new memory and other processes do not count.
+"""
 
 PEAK = """
 import sys
