@@ -329,8 +329,8 @@ class JointStates:
             models = ' and models' if positions.free_models else ''
             self._logger.info(f'all joints{models} have been reported now')
         if values.ndim > 1:
-            source.note_model(
-                positions.names[effect.selection.changed[0]], self._sources_of_models)
+            for dof in effect.selection.changed:
+                source.note_model(positions.names[dof], self._sources_of_models)
         rows = self._effects.rows(effect)
         if len(rows) and not self._has_moved:
             self._has_moved = True

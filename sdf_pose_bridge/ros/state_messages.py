@@ -22,6 +22,7 @@ from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.ros.cdr import NANOSECONDS, SerializedNames, StampedPose
 from sdf_pose_bridge.ros.log_lines import names_in_line
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
+from sdf_pose_bridge.tf.joint_motion import NO_DOF
 from sdf_pose_bridge.tf.joint_positions import LARGEST_POSITION, Selection
 from sdf_pose_bridge.tf.lookup import PoseLookup
 
@@ -30,6 +31,9 @@ MOST_BYTES = 4_000_000
 
 BYTES_OF_OBJECTS = 2_000
 """Size that is counted for the objects of an effect, in addition to its names and rows."""
+
+_BYTES_OF_MODEL = 200
+"""Size that is counted for each model of an effect."""
 
 MOST_OFF_UNIT = 0.01
 """Largest difference of the norm of a quaternion from 1; it is made 1."""
@@ -52,7 +56,7 @@ class Effect:
     """The degrees of freedom and the transforms that messages with the same names change."""
 
     names: SerializedNames
-    """The names of joints; empty for the pose of a model."""
+    """The names of joints; empty for poses of models."""
     selection: Selection
     """The degrees of freedom."""
     rows: NDArray[np.intp]
@@ -72,11 +76,11 @@ class Message(NamedTuple):
     source: StateSource
     effect: Effect
     values: NDArray[np.float64]
-    """A position for each name; or the pose of a model, shape (1, 7)."""
+    """A position for each name; or the poses of models, shape (k, 7)."""
     stamp_ns: int
     """Its stamp in nanoseconds; 0 if it has none."""
     frame_id: str = ''
-    """The frame in which the pose of a model is given; empty for the root frame."""
+    """The frame in which the pose of a single model is given; empty for the root frame."""
 
 
 class StateSource:
@@ -164,7 +168,9 @@ class StateSource:
 
         :param dof: the free model whose poses they are; None if their child frame ids name it.
         """
-        messages, unknown, others, invalid = [], [], [], []
+        # Poses in the root frame with one stamp become one message.
+        groups: dict[tuple[int, str, int], dict[int, Sequence[float]]] = {}
+        unknown, others, invalid = [], [], []
         for pose in poses:
             model = effects.models.get(pose.child_frame_id) if dof is None else dof
             frame_id = '' if effects.is_root(pose.frame_id) else pose.frame_id
@@ -175,9 +181,9 @@ class StateSource:
             elif not abs(math.hypot(*pose.pose[3:]) - 1.0) <= MOST_OFF_UNIT:
                 invalid.append(pose.pose)
             else:
-                unit = (*pose.pose[:3], *canonical_quaternion(pose.pose[3:]))
-                messages.append(Message(
-                    self, effects.of_model(model), np.array([unit]), pose.stamp_ns, frame_id))
+                key = pose.stamp_ns, frame_id, model if frame_id else NO_DOF
+                groups.setdefault(key, {})[model] = (
+                    *pose.pose[:3], *canonical_quaternion(pose.pose[3:]))
         if unknown:
             self.warn_once('models', unknown, lambda: (
                 f'{self.name} has poses of {names_in_line(unknown)}, which are ignored: no model '
@@ -191,7 +197,11 @@ class StateSource:
         if invalid:
             self.warn('pose', lambda: (
                 f'a pose from {self.name} is ignored: {invalid[0]} has no quaternion of length 1'))
-        return messages
+        return [
+            Message(
+                self, effects.of_models(tuple(sorted(group))),
+                np.array([group[dof] for dof in sorted(group)]), stamp_ns, frame_id)
+            for (stamp_ns, frame_id, _), group in groups.items()]
 
 
 def add_newest(messages: Iterable[Message], newest: dict[Effect, Message]) -> None:
@@ -219,9 +229,8 @@ class Effects:
         self._frames = frames
         self._lookup = lookup
         self._root_patterns = root_patterns
-        # By the model and the names.
-        self._effects: dict[tuple[str, tuple[str, ...]], Effect] = {}
-        self._effects_of_models: dict[int, Effect] = {}
+        # By the model and the names, or by the degrees of freedom of free models.
+        self._effects: dict[tuple[str, tuple[str, ...]] | tuple[int, ...], Effect] = {}
         self._are_roots: dict[str, bool] = {}
         tree, motion = frames.tree, frames.frames.motion
         free_models = dict(enumerate(motion.free_models, len(motion.dofs)))
@@ -256,12 +265,13 @@ class Effects:
         self.last[source.name] = found
         return found, unknown
 
-    def of_model(self, dof: int) -> Effect:
-        """Return the effect of a pose of a free model."""
-        found = self._effects_of_models.get(dof)
+    def of_models(self, dofs: tuple[int, ...]) -> Effect:
+        """Return the effect of poses of free models."""
+        found = self._effects.get(dofs)
         if found is None:
-            found = self._effects_of_models[dof] = Effect(
-                SerializedNames((), b''), self.positions.selection_of_model(dof),
+            self._make_room(BYTES_OF_OBJECTS + _BYTES_OF_MODEL * len(dofs))
+            found = self._effects[dofs] = Effect(
+                SerializedNames((), b''), self.positions.selection_of_models(dofs),
                 np.array([], np.intp))
         return found
 
@@ -289,7 +299,7 @@ class Effects:
 
     def values(self, message: Message) -> NDArray[np.float64]:
         """
-        Return the positions, or the pose in the root frame, that a message has.
+        Return the positions, or the poses in the root frame, that a message has.
 
         :raises SdfError: if its pose is given in a frame whose pose is not known, or that moves
             with the model.

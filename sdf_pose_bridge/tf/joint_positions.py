@@ -204,12 +204,12 @@ class JointPositions:
             tuple(filter(None, reached.values())), changed,
             np.unique(self._models[changed]).tolist())
 
-    def selection_of_model(self, dof: int) -> Selection:
-        """Return the degree of freedom of a free model, for a message that has its pose alone."""
-        dofs = np.array([dof])
+    def selection_of_models(self, dofs: Sequence[int]) -> Selection:
+        """Return the degrees of freedom of free models, for a message that has their poses."""
+        indices = np.array(dofs)
         return Selection(
-            np.array([0]), dofs, self._motion.coordinates(dofs), (), [dof],
-            self._models[dofs].tolist())
+            np.arange(len(dofs)), indices, self._motion.coordinates(indices), (), list(dofs),
+            np.unique(self._models[indices]).tolist())
 
     def unknown(self, names: Iterable[str], model: str = '') -> list[str]:
         """Find names that are unknown or ambiguous, in a model as for :meth:`selection`."""

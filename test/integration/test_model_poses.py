@@ -11,6 +11,7 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from bridge_process import LoggedProcess
+from builtin_interfaces.msg import Time
 from changes import BRIDGE, listen_to_tf, pose_of, reload, replace, set_parameters
 from geometry_msgs.msg import (
     PointStamped,
@@ -19,6 +20,7 @@ from geometry_msgs.msg import (
     TransformStamped,
 )
 from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 from tracker import CART, stamped, Tracker, WORLD
 
@@ -100,6 +102,45 @@ def test_a_tracker_may_come_late_stop_and_come_back(follow, tf, tracker):
     tf.listener.wait(lambda: not tf.listener.node.count_publishers(CART), lambda: 'its end')
     assert pose_of(tf, 'cart').x == 3.0
     tracker.move(4.0)
+
+
+def test_older_poses_count_after_simulated_time_has_jumped_back(follow, tf, tracker):
+    follow(use_sim_time=True)
+    clock = tf.listener.node.create_publisher(Clock, '/clock', 10)
+
+    def is_moved(sec, x):
+        clock.publish(Clock(clock=Time(sec=sec)))
+        # Without a stamp, a pose has the time of the node.
+        tracker.publish(stamped(PoseStamped, 0, x))
+        found = tf.last.get('cart/deck')
+        return found and (found.header.stamp.sec, found.transform.translation.x) == (sec, x)
+
+    for sec, x in ((2000, 3.0), (10, 4.0)):
+        tf.listener.wait(lambda sec=sec, x=x: is_moved(sec, x), lambda: tf.last)
+
+
+def test_many_poses_of_hostile_names_delay_no_look_up(follow, tf, tracker):
+    bridge = follow('/poses')
+
+    def move(x):
+        def is_there():
+            tracker.sec += 1
+            tracker.publish(TFMessage(transforms=[
+                stamped(TransformStamped, tracker.sec, x, '', 'cart')]), '/poses')
+            found = tf.last.get('cart/deck')
+            return found and found.transform.translation.x == x
+        tf.listener.wait(is_there, lambda: tf.last)
+
+    move(3.0)
+    for number in range(30):
+        hostile = [f'\n\x1b[31m{{}}%s"{number}/{row}' for row in range(300)]
+        tracker.publish(TFMessage(transforms=[
+            stamped(TransformStamped, number, math.nan, *names)
+            for each in hostile for names in ((each, 'cart'), ('', each))]), '/poses')
+        assert pose_of(tf, 'cart/deck').x == 3.0
+    move(4.0)
+    assert sum('which are ignored' in line for line in bridge.lines) <= 4
+    assert not any('internal error' in line for line in bridge.lines)
 
 
 def test_poses_in_a_frame_that_moves_follow_it(follow, tf, tracker, joints):

@@ -110,3 +110,19 @@ def test_a_pose_moves_the_link_at_which_the_model_hangs(models):
     models.positions.update(message.effect.selection, message.values, 5)
     frames = models.effects.rows(message.effect)
     assert len(frames) == 1
+
+
+def test_poses_in_the_root_with_one_stamp_are_one_message(models):
+    poses = [
+        StampedPose(stamp_ns, frame_id, child, (x, *TURNED[1:]))
+        for x, child, stamp_ns, frame_id in (
+            (1.0, 'a::b', 5, ''), (2.0, 'a', 5, 'w'), (3.0, 'a', 6, ''), (4.0, 'a', 5, ''),
+            (5.0, 'a::b', 5, 'p/fixed/l'))]
+    messages = models.source.messages_from_poses(poses, models.effects)
+    names = models.positions.names
+    found = [
+        ([names[dof] for dof in each.effect.selection.dofs], each.values[:, 0].tolist(),
+         each.stamp_ns) for each in messages]
+    assert found == [(['a', 'a/b'], [4.0, 1.0], 5), (['a'], [3.0], 6), (['a/b'], [5.0], 5)]
+    again = models.source.messages_from_poses(poses[1::-1], models.effects)
+    assert again[0].effect is messages[0].effect

@@ -276,11 +276,11 @@ def free_positions(*names, **options):
 
 def place(positions, dof, x, stamp_ns=5):
     pose = np.array([[x, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]])
-    return positions.update(positions.selection_of_model(dof), pose, stamp_ns)
+    return positions.update(positions.selection_of_models([dof]), pose, stamp_ns)
 
 
 def x_of(positions, dof):
-    return positions.values[positions.selection_of_model(dof).coordinates[0, 0]]
+    return positions.values[positions.selection_of_models([dof]).coordinates[0, 0]]
 
 
 def test_poses_and_positions_have_coordinates_of_their_own():
