@@ -152,8 +152,8 @@ class UndefinedReporter:
         return f'did you mean {form.format(nearest)}?' if nearest else ''
 
 
-
 def _choice_of(definition: Definition) -> str:
+    """Return the few attributes that an element can have, as the end of a message."""
     names = [*definition.attributes]
     return f'it can have {", ".join(names)}' if 0 < len(names) <= _MOST_NAMES else ''
 

@@ -83,7 +83,7 @@ class ResourceFinder(NamedTuple):
         return next(self._paths(uri, including_file), None)
 
     def other_path_from_uri(self, uri: str, including_file: str) -> str | None:
-        """Return a later file or directory of a relative path, which is not found; or None."""
+        """Return the second file or directory that a relative path could mean, or None."""
         found = self._paths(uri, including_file) if _scheme_and_name(uri)[0] in _RELATIVE else ()
         real_paths = dict.fromkeys(map(os.path.realpath, found))
         return next(islice(real_paths, 1, None), None)
