@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Resolve poses and axes, and make the scene."""
+"""Resolve poses, with placement frames and automatic inertials, and axes; make the scene."""
 
 from __future__ import annotations
 
