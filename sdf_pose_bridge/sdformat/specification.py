@@ -324,8 +324,8 @@ _URDF_CONTENTS = {
         'audio_source=any bullet=any collision_checking=any contact=any '
         'self_collision_checking=any self_filter=any sensor=any'),
     'urdf_inertial': 'origin=urdf_origin mass=urdf_mass inertia=urdf_inertia',
-    'urdf_mass': '@value',
-    'urdf_inertia': '@ixx @ixy @ixz @iyx @iyy @iyz @izx @izy @izz',
+    'urdf_mass': '@value!:double',
+    'urdf_inertia': '@ixx!,@ixy!,@ixz!,@iyy!,@iyz!,@izz!:double @iyx @izx @izy',
     'urdf_visual': (
         '@name @group origin=urdf_origin geometry=urdf_geometry material=urdf_material '
         'bullet=any'),
@@ -335,10 +335,10 @@ _URDF_CONTENTS = {
     'urdf_geometry': (
         '@name box=urdf_box cylinder=urdf_cylinder capsule=urdf_cylinder sphere=urdf_sphere '
         'mesh=urdf_mesh cdf=any plane=any'),
-    'urdf_box': '@size',
-    'urdf_cylinder': '@length @radius',
-    'urdf_sphere': '@radius',
-    'urdf_mesh': '@filename @scale',
+    'urdf_box': '@size!:vector3',
+    'urdf_cylinder': '@length!,@radius!:double',
+    'urdf_sphere': '@radius!:double',
+    'urdf_mesh': '@filename! @scale:vector3',
     'urdf_material': '@name color=urdf_color texture=urdf_texture specular=any',
     'urdf_color': '@rgba',
     'urdf_texture': '@filename',
@@ -347,19 +347,20 @@ _URDF_CONTENTS = {
         'axis=urdf_axis limit=urdf_limit dynamics=urdf_dynamics mimic=urdf_mimic '
         'calibration=urdf_calibration safety_controller=urdf_safety_controller '
         'controller_gains=any joint_properties=any traits=any'),
-    'urdf_origin': '@xyz @rpy @quat_xyzw',
+    'urdf_origin': '@xyz,@rpy:vector3 @quat_xyzw',
     'urdf_end': '@link',
-    'urdf_axis': '@xyz',
+    'urdf_axis': '@xyz:vector3',
     'urdf_limit': (
-        '@lower @upper @effort @velocity @acceleration @deceleration @jerk @command_effort '
-        '@current @gear_velocity'),
-    'urdf_dynamics': '@damping @friction @D @K @mu_coulomb @mu_viscous',
-    'urdf_mimic': '@joint @multiplier @offset',
-    'urdf_calibration': '@rising @falling @reference_position',
-    'urdf_safety_controller': '@soft_lower_limit @soft_upper_limit @k_position @k_velocity',
+        '@lower,@upper,@effort!,@velocity!:double @acceleration @deceleration @jerk '
+        '@command_effort @current @gear_velocity'),
+    'urdf_dynamics': '@damping,@friction:double @D @K @mu_coulomb @mu_viscous',
+    'urdf_mimic': '@joint! @multiplier,@offset:double',
+    'urdf_calibration': '@rising,@falling:double @reference_position',
+    'urdf_safety_controller': (
+        '@soft_lower_limit,@soft_upper_limit,@k_position,@k_velocity!:double'),
 }
 """The same for URDF, with additions of Gazebo, ros2_control, Bullet, Drake, MuJoCo and makers of
-robots that change no frame."""
+robots that change no frame. Types are only those of the numbers that urdfdom reads."""
 
 ELEMENTS = {
     identifier: content

@@ -11,14 +11,14 @@ error, but in a link the parser stops at the fault and keeps the part that it ha
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from sdf_pose_bridge.errors import DuplicateNameError, ElementInvalidError, ParsingError
 from sdf_pose_bridge.geometry.formats import LARGEST_ANGLE_RAD
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import JOINT_SUFFIX, shortened, unused_name
-from sdf_pose_bridge.sdformat.grammar import definition_of
+from sdf_pose_bridge.sdformat.grammar import definition_of, Item
 from sdf_pose_bridge.sdformat.inertials import MOMENTS
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import URDF_JOINT_TYPES
@@ -32,20 +32,7 @@ from sdf_pose_bridge.sdformat.urdf.values import (
 )
 from sdf_pose_bridge.sdformat.xml_tree import child_elements, first_child, written_tag, XmlElement
 
-_JOINT_PARTS = {
-    'axis': 'xyz:3',
-    'limit': 'lower upper effort! velocity!',
-    'dynamics': 'damping friction',
-    'mimic': 'multiplier offset',
-    'safety_controller': 'k_velocity! soft_lower_limit soft_upper_limit k_position',
-    'calibration': 'rising falling',
-}
-"""Elements in a joint, and their attributes that are numbers; see :func:`numbers_of`."""
-
-_SHAPES = {
-    'box': 'size:3!', 'cylinder': 'length! radius!', 'mesh': 'scale:3', 'sphere': 'radius!'}
-"""Shapes, and their attributes that are numbers."""
-
+_SHAPES = ('box', 'cylinder', 'mesh', 'sphere')
 _SETTINGS = frozenset({
     'canonicalBody', 'cfmDamping', 'collision', 'dampingFactor', 'disableFixedJointLumping',
     'fdir1', 'fudgeFactor', 'implicitSpringDamper', 'kd', 'kp', 'laserRetro', 'material',
@@ -54,9 +41,6 @@ _SETTINGS = frozenset({
     'turnGravityOff', 'visual',
 })
 """Children of ``<gazebo>`` that are not SDFormat."""
-
-_INERTIA = ' '.join(f'{name}!' for name in MOMENTS)
-
 
 class RobotInertial(NamedTuple):
     """Mass, center of mass and moments of inertia of a link."""
@@ -219,12 +203,12 @@ def _named_children(root: XmlElement, tag: str, errors: Sources) -> Mapping[str,
 
 
 def _robot_origin(root: XmlElement, sources: Sources, errors: Sources) -> Pose:
-    numbers: dict[str, list[float]] = {}
+    numbers: dict[str, Sequence[float]] = {}
     origin = first_child(root, 'origin')
     if origin is not None:
-        for attribute in ('xyz:3', 'rpy:3'):
+        for rule in _rules('urdf_origin'):
             try:
-                numbers.update(numbers_of(origin, attribute))
+                numbers.update(numbers_of(origin, [rule]))
             except NotFiniteError as error:
                 errors.error(ElementInvalidError, origin, str(error))
             except ValueError as error:
@@ -240,9 +224,10 @@ def _link(name: str, xml: XmlElement, sources: Sources, errors: Sources) -> Robo
         if inertial_xml is not None:
             inertial = RobotInertial()
             inertial = RobotInertial(origin=_origin(inertial_xml, sources))
-            mass = numbers_of(_required_child(inertial_xml, 'mass'), 'value!')
+            mass = numbers_of(_required_child(inertial_xml, 'mass'), _rules('urdf_mass'))
             inertial = inertial._replace(mass=mass['value'][0])
-            inertia = numbers_of(_required_child(inertial_xml, 'inertia'), _INERTIA)
+            inertia = numbers_of(
+                _required_child(inertial_xml, 'inertia'), _rules('urdf_inertia'))
             inertial = inertial._replace(moments=tuple(inertia[name][0] for name in MOMENTS))
         for shape in (*child_elements(xml, 'visual'), *child_elements(xml, 'collision')):
             shapes.append(_shape(shape, sources))  # noqa: PERF401  # those before a fault are kept
@@ -272,24 +257,28 @@ def _joint(
         errors.error(ParsingError, xml, msg)
     elif joint_type.has_limit and first_child(xml, 'limit') is None:
         errors.error(ParsingError, xml, f'the {type_name} joint has no <limit>')
-    values = {}
+    values: dict[str, Numbers] = {}
     try:
-        for tag, attributes in _JOINT_PARTS.items():
-            part = first_child(xml, tag)
+        for tag, definition in definition_of('urdf_joint').children.items():
+            part = first_child(xml, str(tag))
             if part is None or (
                     tag == 'axis' and joint_type is not None and not joint_type.has_axis):
                 continue
-            values[tag] = numbers_of(part, attributes)
-            if tag == 'mimic' and part.get('joint') is None:
-                errors.error(ParsingError, part, 'the <mimic> names no joint')
+            values[tag] = numbers_of(part, definition.attributes.values())
             if tag == 'dynamics' and not values[tag]:
                 errors.error(
                     ParsingError, part, 'the <dynamics> has neither damping nor friction')
-        return RobotJoint(xml, name, type_name, _origin(xml, sources), ends[0], ends[1], values)
+        origin = _pose_of_origin(first_child(xml, 'origin'), values.get('origin', {}), sources)
+        return RobotJoint(xml, name, type_name, origin, ends[0], ends[1], values)
     except ValueError as error:
         error_class = ElementInvalidError if isinstance(error, NotFiniteError) else ParsingError
         errors.error(error_class, xml, str(error))
         return None
+
+
+def _rules(identifier: str) -> Iterable[Item]:
+    """Return the rules of the grammar for the attributes of an element."""
+    return definition_of(identifier).attributes.values()
 
 
 def _required_child(xml: XmlElement, tag: str) -> XmlElement:
@@ -302,7 +291,7 @@ def _required_child(xml: XmlElement, tag: str) -> XmlElement:
 
 def _origin(xml: XmlElement, sources: Sources) -> Pose:
     origin = first_child(xml, 'origin')
-    numbers = {} if origin is None else numbers_of(origin, 'xyz:3 rpy:3')
+    numbers = {} if origin is None else numbers_of(origin, _rules('urdf_origin'))
     return _pose_of_origin(origin, numbers, sources)
 
 
@@ -321,10 +310,7 @@ def _shape(xml: XmlElement, sources: Sources) -> RobotShape:
     if geometry is None or geometry.tag not in _SHAPES:
         msg = f'the <geometry> of <{written_tag(xml)}> must hold one of {", ".join(_SHAPES)}'
         raise ValueError(msg)
-    numbers = numbers_of(geometry, _SHAPES[str(geometry.tag)])
-    if geometry.tag == 'mesh' and geometry.get('filename') is None:
-        msg = '<mesh> has no filename'
-        raise ValueError(msg)
+    numbers = numbers_of(geometry, _rules(f'urdf_{geometry.tag}'))
     material = first_child(xml, 'material')
     if xml.tag == 'visual' and material is not None and material.get('name') is None:
         msg = '<material> has no name'

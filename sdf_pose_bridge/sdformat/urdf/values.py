@@ -4,13 +4,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 import math
 import re
 from typing import TypeAlias
 
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
+from sdf_pose_bridge.sdformat.grammar import Item
 from sdf_pose_bridge.sdformat.values import number_from_word
 from sdf_pose_bridge.sdformat.xml_tree import text_of, WHITE_SPACE, written_tag, XmlElement
 
@@ -46,35 +47,35 @@ def leading_numbers(text: str, count: int) -> Sequence[float]:
     return [float(number[0]) for number in map(_LEADING_NUMBER.match, words) if number]
 
 
-def numbers_of(xml: XmlElement, attributes: str) -> dict[str, list[float]]:
+def numbers_of(xml: XmlElement, rules: Iterable[Item]) -> dict[str, Sequence[float]]:
     """
     Read the attributes of an element that are numbers.
 
-    :param attributes: names, with ``!`` for a required one, and ``:3`` for three numbers.
+    :param rules: the rules of the grammar for attributes; those of other types are only required.
     :return: the numbers of those that it has.
     :raises NotFiniteError: if one of three numbers is not finite.
     :raises ValueError: if one is missing or is not numbers.
     """
     tag = written_tag(xml)
     result = {}
-    for item in attributes.split():
-        name, _, count = item.rstrip('!').partition(':')
-        text = xml.get(name)
+    for rule in rules:
+        name, count, text = rule.name, rule.value_type.count, xml.get(rule.name)
         if text is None:
-            if item.endswith('!'):
+            if rule.required:
                 msg = f'<{tag}> has no {name}'
                 raise ValueError(msg)
-            continue
-        # Text behind a single number is ignored.
-        words = text.split() if count else [text.lstrip(WHITE_SPACE)]
-        result[name] = [number for word in words for number in number_from_word(word)]
-        msg = f'{name} of <{tag}> is "{text[:80]}"'
-        if not len(result[name]) == len(words) == int(count or 1):
-            msg += f', which is not {f"{count} numbers" if count else "a number"}'
-            raise ValueError(msg)
-        if count and not all(map(math.isfinite, result[name])):
-            msg += '; the numbers must be finite'
-            raise NotFiniteError(msg)
+        elif count:
+            # Text behind a single number is ignored.
+            words = [text.lstrip(WHITE_SPACE)] if count == 1 else text.split()
+            numbers = [number for word in words for number in number_from_word(word)]
+            msg = f'{name} of <{tag}> is "{text[:80]}"'
+            if not len(numbers) == len(words) == count:
+                msg += f', which is not {rule.value_type.description}'
+                raise ValueError(msg)
+            if count > 1 and not all(map(math.isfinite, numbers)):
+                msg += '; the numbers must be finite'
+                raise NotFiniteError(msg)
+            result[name] = numbers
     return result
 
 

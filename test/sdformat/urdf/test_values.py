@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import matrix_from_rpy
+from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.urdf.values import (
     is_true,
     NotFiniteError,
@@ -27,35 +28,41 @@ from sdf_pose_bridge.sdformat.urdf.values import (
 ANGLES = st.floats(-4, 4) | st.sampled_from([0.0, math.pi / 2, -math.pi / 2, 1.5707963, 1.57])
 
 
+def read(content, **attributes):
+    rules = Definition('a', content).attributes.values()
+    return numbers_of(etree.Element('a', attributes), rules)
+
+
 @pytest.mark.parametrize(('text', 'numbers'), [
     ('1 2 3', [1, 2, 3]), (' 1.  -2e1   +3 ', [1, -20, 3]), ('1m 2 3', [1, 2, 3]),
     ('0x10 2 3', [16, 2, 3]),
 ])
 def test_numbers_are_read_as_by_strtod(text, numbers):
-    assert numbers_of(etree.Element('a', x=text), 'x:3 y') == {'x': numbers}
+    assert read('@x:vector3 @y:double', x=text) == {'x': numbers}
 
 
-@pytest.mark.parametrize(('attributes', 'wanted', 'message'), [
-    *(({'x': text}, 'x:3', 'is not 3 numbers')
+@pytest.mark.parametrize(('attributes', 'content', 'message'), [
+    *(({'x': text}, '@x:vector3', 'is not three numbers')
       for text in ('', '1 2', '1 2 3 4', '1 2 x', '1 2 1e999')),
-    *(({'x': text}, 'x!', 'is not a number') for text in ('', ' ', 'x 1', '1e999', 'true')),
-    ({}, 'x!', '<a> has no x'),
+    *(({'x': text}, '@x:double', 'is not a number')
+      for text in ('', ' ', 'x 1', '1e999', 'true')),
+    ({}, '@x!:double', '<a> has no x'),
 ])
-def test_what_is_no_number(attributes, wanted, message):
+def test_what_is_no_number(attributes, content, message):
     with pytest.raises(ValueError, match=message):
-        numbers_of(etree.Element('a', attributes), wanted)
+        read(content, **attributes)
 
 
 @pytest.mark.parametrize('text', ['1 2 nan', '-inf 0 0'])
 def test_three_numbers_must_be_finite(text):
     with pytest.raises(NotFiniteError, match='must be finite'):
-        numbers_of(etree.Element('a', x=text), 'x:3')
+        read('@x:vector3', x=text)
 
 
 @pytest.mark.parametrize(('text', 'number'), [
     (' 1  2 3', 1), ('\t0x10', 16), ('1.5kg', 1.5), ('1 x', 1), ('inf 0', math.inf)])
 def test_single_number_is_what_the_text_begins_with(text, number):
-    assert numbers_of(etree.Element('a', x=text), 'x!') == {'x': [number]}
+    assert read('@x!:double', x=text) == {'x': [number]}
 
 
 @pytest.mark.parametrize(('text', 'expected'), [
