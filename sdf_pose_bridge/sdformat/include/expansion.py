@@ -258,19 +258,30 @@ def _name_from_uri(uri: str) -> str:
 # The parts that an include overrides
 
 def _override(include: XmlElement, top: XmlElement, sources: Sources) -> None:
-    tags = ('static', 'pose', 'name', 'placement_frame') if top.tag == 'model' else (
-        'pose', 'name')
-    own = {tag: xml for tag in tags if (xml := first_child(include, tag)) is not None}
-    values = {tag: value_of(xml) for tag, xml in own.items() if tag != 'pose'}
-    for tag, value in values.items():
-        if not value:
-            sources.error(ElementInvalidError, own[tag], f'<{tag}> of the include is empty')
-    if values.get('name'):
-        top.set('name', values['name'])
+    """Set the attributes and values of an included element that its include has, too."""
+    definition = definition_of(str(top.tag))
+    own = {
+        str(tag): xml for tag, each in definition_of('include').children.items()
+        if each.value is not None and (tag in definition.attributes or tag in definition.children)
+        and (xml := first_child(include, str(tag))) is not None}
+    for tag, new in own.items():
+        if tag in definition.attributes:
+            top.set(tag, value_of(new))
+        else:
+            replacement, old = copy_of(new), first_child(top, tag)
+            if old is None:
+                top.insert(0, replacement)
+            else:
+                top.replace(old, replacement)
+            sources.set_source(replacement, new)
+        if tag != 'pose' and not value_of(new):
+            sources.error(ElementInvalidError, new, f'<{tag}> of the include is empty')
+    if 'name' in own:
         sources.set_origin(top, is_named_by_include=True)
-    placement = values.get('placement_frame')
+    if 'pose' in own:
+        sources.set_origin(top, pose=Place(sources.path(include), sources.line(include)))
+    placement = value_of(own['placement_frame']) if 'placement_frame' in own else ''
     if placement:
-        top.set('placement_frame', placement)
         if 'pose' not in own:
             msg = (f'<placement_frame> "{placement}" needs a <pose> in the same include, which '
                    'says where that frame is')
@@ -278,13 +289,3 @@ def _override(include: XmlElement, top: XmlElement, sources: Sources) -> None:
         elif placement == ROOT_FRAME:
             msg = f'"{placement}" is reserved; it cannot be a placement frame'
             sources.error(ReservedNameError, include, msg)
-    for tag, new in own.items():
-        if tag in ('static', 'pose'):
-            replacement, old = copy_of(new), first_child(top, tag)
-            if old is None:
-                top.insert(0, replacement)
-            else:
-                top.replace(old, replacement)
-            sources.set_source(replacement, new)
-    if 'pose' in own:
-        sources.set_origin(top, pose=Place(sources.path(include), sources.line(include)))
