@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+import os
 from pathlib import Path
 import re
 import shlex
@@ -36,6 +37,8 @@ class _Language(NamedTuple):
     """Beginnings of its expressions and statements."""
 
 
+_XACRO = _Language('xacro', ('.xacro',), ())
+"""Its expressions are an error, not a doubt, so they have rules of their own."""
 _LANGUAGES = (
     _Language('Jinja', ('.jinja', '.jinja2', '.j2'), ('{{', '{%')),
     _Language('ERB', ('.erb',), ('<%',)),
@@ -54,6 +57,15 @@ def hint_about_template(path: str, text: bytes) -> str:
         if path.endswith(language.suffixes) or any(
                 mark.encode() in text for mark in language.marks):
             return f'; the file {_cure(language, path)}'
+    return ''
+
+
+def hint_about_missing_file(path: str) -> str:
+    """Return the template beside a missing file that makes it, as the end of a message; or ''."""
+    for language in (_XACRO, *_LANGUAGES):
+        template = _template(language, path)
+        if template:
+            return f'; {language.name} makes it of "{template}" beside it'
     return ''
 
 
@@ -87,9 +99,16 @@ def _cure(language: _Language, path: str) -> str:
     made = next((path.removesuffix(each) for each in language.suffixes if path.endswith(each)), '')
     file = (f'"{Path(made).name}" beside it' if made and Path(made).is_file()
             else 'the file that it writes')
-    sources = [f'{path}{each}' for each in language.suffixes if Path(f'{path}{each}').is_file()]
-    source = f' on "{Path(sources[0]).name}" beside it' if sources else ''
+    template = _template(language, path)
+    source = f' on "{template}" beside it' if template else ''
     return f'is for {language.name}; run {language.name}{source} first, and read {file}'
+
+
+def _template(language: _Language, path: str) -> str:
+    """Return the name of the template that makes a file, if it is beside it; else ''."""
+    # Unlike Path.is_file, this returns False for a name that is too long.
+    templates = (f'{path}{suffix}' for suffix in language.suffixes)
+    return next((Path(each).name for each in templates if os.path.isfile(each)), '')  # noqa: PTH113
 
 
 def _values(xml: XmlElement) -> Iterator[tuple[str, str]]:
@@ -113,13 +132,11 @@ def _refuse_xacro(root: XmlElement, path: str, sources: Sources) -> None:
     is_xacro, is_sdf = name.endswith('.xacro'), root.tag == 'sdf'
     location = None
     for xml in _EXPANDED_PARTS(root):
-        tag, text, parent = written_tag(xml), text_of(xml), xml.getparent()
+        tag, parent = written_tag(xml), xml.getparent()
+        *attributes, (text, part) = _values(xml)
         found = [f'<{tag}>'] if tag.startswith('xacro:') else []
-        found += [
-            f'{attribute}="{value}" of <{tag}>' for attribute, value in xml.items()
-            if _XACRO_EXPRESSION.search(value)]
+        found += [shown for value, shown in attributes if _XACRO_EXPRESSION.search(value)]
         if _XACRO_EXPRESSION.search(text) and not tag.endswith('topic'):
-            part = f'"{text.strip()}" in <{tag}>'
             if is_sdf and not is_xacro and tag.endswith(_LOCATIONS) and (
                     parent is not None and parent.tag != 'include'):
                 location = location or (xml, part)

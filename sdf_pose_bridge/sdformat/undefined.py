@@ -34,9 +34,6 @@ identifier of the element around it."""
 _MOST_NAMES = 6
 """Largest number of attributes that a message names."""
 
-_MOST_LEVELS = 3
-"""Number of levels below an element that are searched for the right place of another one."""
-
 
 class UndefinedReporter:
     """
@@ -120,25 +117,27 @@ class UndefinedReporter:
         """Return where an element can stand: in a child of its parent, or in an outer element."""
         key = parent.identifier, tag
         if key not in self._places and self._sources.problems.allows_hint():
-            tags = [
-                *_tags_of_holders(tag, [parent]), *self._outer_holder(tag, parent_xml)]
-            level = [parent]
-            for _ in range(1, _MOST_LEVELS):
-                level = [child for each in level for child in _inner_definitions(each).values()]
-                tags = tags or _tags_of_holders(tag, level)
-            self._places[key] = ' or '.join(f'<{each}>' for each in tags)
+            holders = [*_inner_holders(tag, [parent]), *self._outer_holder(tag, parent_xml)]
+            level, known = [parent], set[str]()
+            while level and not holders:
+                level = [
+                    child for each in level for child in _inner_definitions(each).values()
+                    if child.identifier not in known]
+                known.update(child.identifier for child in level)
+                holders = _inner_holders(tag, level)
+            self._places[key] = ' or '.join(holders)
         place = self._places.get(key, '')
         return f'it can stand in {place}' if place else ''
 
     def _outer_holder(self, tag: str, xml: XmlElement) -> list[str]:
-        """Return the tag of the nearest element around an element that can hold another one."""
+        """Return the nearest element around an element that can hold another one."""
         definition: Definition | None = definition_of(self._root, has_frames=True)
         holder, holders = self._root, list[str]()
         for outer in reversed([*with_ancestors(xml)][:-1]):
             if definition is None:
                 break
             if tag in definition.children:
-                holders = [holder]
+                holders = [f'<{holder}>']
             holder = written_tag(outer)
             definition = definition.children.get(outer.tag)
         return holders
@@ -165,8 +164,10 @@ def _inner_definitions(definition: Definition) -> Mapping[object, Definition]:
         if child.value is None and (child.has_frames or not definition.has_frames)}
 
 
-def _tags_of_holders(tag: str, definitions: Iterable[Definition]) -> list[str]:
-    """Return the tags of child elements of some elements that can hold an element."""
+def _inner_holders(tag: str, definitions: Iterable[Definition]) -> list[str]:
+    """Return the child elements of some elements that can hold an element."""
     return [*dict.fromkeys(
-        str(inner) for each in definitions for inner, child in _inner_definitions(each).items()
+        f'<{inner}> of <{child.identifier.partition("/")[0]}>' if '/' in child.identifier
+        else f'<{inner}>'
+        for each in definitions for inner, child in _inner_definitions(each).items()
         if tag in child.children)]

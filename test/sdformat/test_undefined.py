@@ -28,8 +28,10 @@ def messages_of(text):
     (link_with('<mass>1</mass>'),
      '<mass> in <link> is not defined in SDFormat; it can stand in <inertial>'),
     (link_with('<visual name="v"><uri>u</uri><geometry/></visual>'),
-     ('<uri> in <visual> is not defined in SDFormat; it can stand in <script> or <heightmap> or '
-      '<image> or <mesh>')),
+     ('<uri> in <visual> is not defined in SDFormat; it can stand in <script> of <material> '
+      'or <heightmap> or <image> or <mesh>')),
+    (link_with('<mu>1</mu>'),
+     '<mu> in <link> is not defined in SDFormat; it can stand in <ode> of <friction>'),
     (link_with('<sensor name="s" type="camera"><optical_frame_id>o</optical_frame_id></sensor>'),
      '<optical_frame_id> in <sensor> is not defined in SDFormat; it can stand in <camera>'),
     (link_with('<pose>1 2 3 0 0 0<relative_to>world</relative_to></pose>'),

@@ -9,7 +9,7 @@ version: ``getModelFilePath`` and ``getBestSupportedModelVersion`` of libsdforma
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 import os
 from pathlib import Path
@@ -21,6 +21,7 @@ from urllib.parse import unquote, urlsplit
 from sdf_pose_bridge.errors import AddressError, FileReadError, ParsingError, Place, SdfWarning
 from sdf_pose_bridge.names import hint_from_names, quoted_names, shortened
 from sdf_pose_bridge.sdformat.limits import Usage
+from sdf_pose_bridge.sdformat.templates import hint_about_missing_file
 from sdf_pose_bridge.sdformat.versions import NEWEST, version_numbers
 from sdf_pose_bridge.sdformat.xml_file import xml_from_file
 from sdf_pose_bridge.sdformat.xml_tree import child_elements, first_child, text_of, WHITE_SPACE
@@ -167,7 +168,7 @@ class ResourceFinder(NamedTuple):
             return 'it comes with Gazebo Classic, and no frame needs it'
         folder, missing = self._deepest_folder(uri, including_file)
         if folder:
-            return f'"{folder}" has no "{missing}"{hint_from_names(missing, _entries(folder))}'
+            return f'"{folder}" has no "{missing}"{_hint_about_missing(missing, [folder])}'
         beside = [] if scheme in _SHARED else [
             os.path.dirname(including_file) or '.']  # noqa: PTH120
         directories = [*dict.fromkeys((
@@ -180,8 +181,7 @@ class ResourceFinder(NamedTuple):
         if elsewhere:
             return (f'{reason}, but in "{elsewhere}"; add that to resource_paths (-I on the '
                     'command line)')
-        hint = '' if rest else hint_from_names(
-            first, [entry for each in directories for entry in _entries(each)])
+        hint = '' if rest else _hint_about_missing(first, directories)
         return (f'{reason}; resource_paths (-I on the command line) and GZ_SIM_RESOURCE_PATH add '
                 f'directories{hint}')
 
@@ -318,6 +318,13 @@ def _directory_near(file: str, name: str) -> str:
             if name and os.path.isdir(f'{directory}/{name}'):  # noqa: PTH112
                 return directory
     return ''
+
+
+def _hint_about_missing(name: str, directories: Sequence[str]) -> str:
+    """Return the template of a missing file, or else the nearest name, as the end of a message."""
+    hints = (hint_about_missing_file(f'{each}/{name}') for each in directories)
+    return next(filter(None, hints), '') or hint_from_names(
+        name, [entry for each in directories for entry in _entries(each)])
 
 
 def _entries(directory: str) -> list[str]:

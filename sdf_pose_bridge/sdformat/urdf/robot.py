@@ -203,7 +203,7 @@ def _named_children(root: XmlElement, tag: str, errors: Sources) -> Mapping[str,
 
 
 def _robot_origin(root: XmlElement, sources: Sources, errors: Sources) -> Pose:
-    numbers: dict[str, Sequence[float]] = {}
+    numbers: dict[str, list[float]] = {}
     origin = first_child(root, 'origin')
     if origin is not None:
         for rule in _rules('urdf_origin'):
@@ -259,8 +259,9 @@ def _joint(
         errors.error(ParsingError, xml, f'the {type_name} joint has no <limit>')
     values: dict[str, Numbers] = {}
     try:
-        for tag, definition in definition_of('urdf_joint').children.items():
-            part = first_child(xml, str(tag))
+        for each, definition in definition_of('urdf_joint').children.items():
+            tag = str(each)
+            part = first_child(xml, tag)
             if part is None or (
                     tag == 'axis' and joint_type is not None and not joint_type.has_axis):
                 continue

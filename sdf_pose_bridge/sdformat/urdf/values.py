@@ -47,7 +47,7 @@ def leading_numbers(text: str, count: int) -> Sequence[float]:
     return [float(number[0]) for number in map(_LEADING_NUMBER.match, words) if number]
 
 
-def numbers_of(xml: XmlElement, rules: Iterable[Item]) -> dict[str, Sequence[float]]:
+def numbers_of(xml: XmlElement, rules: Iterable[Item]) -> dict[str, list[float]]:
     """
     Read the attributes of an element that are numbers.
 

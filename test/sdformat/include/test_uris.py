@@ -200,6 +200,7 @@ def test_reason_for_a_missing_fuel_model_says_how_to_fetch_it(uri, shown):
     ('model://box', 'it is not in "mine", "there", "."'),
     ('box', 'it is not in "cells", "mine", "there", "."'),
     ('package://arm/box', 'no package "arm" is installed, and it is not in "mine", '),
+    ('x' * 1000, 'it is not in "cells", '),
 ])
 def test_reason_for_a_missing_model_names_what_was_searched(uri, reason):
     finder = resource_finder(['mine'], {'SDF_PATH': 'there'})
@@ -234,6 +235,17 @@ def test_reason_for_a_misspelt_file_has_the_nearest_name(tmp_path):
     write(tmp_path, 'table.sdf')
     reason = resource_finder((), {}).reason_not_found('tabel.sdf', str(tmp_path / 'cell.sdf'))
     assert reason.endswith('; did you mean "table.sdf"?')
+
+
+@pytest.mark.parametrize(('template', 'program'), [
+    ('arm.sdf.jinja', 'Jinja'), ('arm.sdf.xacro', 'xacro')])
+@pytest.mark.parametrize('uri', ['arm.sdf', 'model://models/arm.sdf'])
+def test_reason_for_a_missing_file_names_the_template_of_it(tmp_path, template, program, uri):
+    write(tmp_path / 'models', template)
+    write(tmp_path / 'models', 'arms.sdf')
+    reason = resource_finder([tmp_path], {}).reason_not_found(
+        uri, str(tmp_path / 'models/cell.sdf'))
+    assert reason.endswith(f'; {program} makes it of "{template}" beside it')
 
 
 # Addresses that users give
