@@ -170,7 +170,7 @@ class JointStates:
         topics = [
             topic.name for topic in self._sources.joint_state_topics
             if not positions.unknown(joints[:1], topic.model)] if joints else []
-        late = [each.late for each in target.sources if each.late]
+        late = list(filter(None, map(self._effects.line_about_lateness, target.sources)))
         return Unreported(len(joints), (*joints, '')[0], topics, models, late)
 
     def _follow_sources(self, target: _Target | None = None) -> None:
@@ -254,8 +254,6 @@ class JointStates:
         target = self._target
         self._effects = Effects(target.frames, target.lookup, target.settings.model_pose_frames)
         self._waiting = _NO_ROWS
-        for each in target.sources:
-            each.late = ''
         now = time.monotonic()
         self._due[self._publish_all] = self._due[self._publish_at_rest] = now
         if not self._has_reported_missing:
@@ -310,8 +308,9 @@ class JointStates:
             self._waiting = _NO_ROWS
 
     def _move(self, message: Message) -> NDArray[np.intp]:
-        target, source, effect = self._target, message.source, message.effect
-        positions, ignores_stamps = target.frames.positions, target.settings.ignore_timestamp
+        target, effect = self._target, message.effect
+        source, positions = effect.source, target.frames.positions
+        ignores_stamps = target.settings.ignore_timestamp
         stamp_ns = message.stamp_ns or self._node.get_clock().now().nanoseconds
         if self._has_jumped and stamp_ns > self._now_ns:
             return _NO_ROWS  # it was sent before that
@@ -339,10 +338,8 @@ class JointStates:
                 f'following {source.name}' if count == 1 else
                 f'following {count} sources; the first message is on {source.name}')
         moved = target.frames.stamp(rows, stamp_ns, ignore_stamps=ignores_stamps)
-        if len(moved):
-            self._effects.end_lateness(message)
-        elif len(rows):
-            self._effects.note_lateness(message, stamp_ns)
+        if len(rows) and not len(moved):
+            self._effects.note_lateness(effect, stamp_ns)
         return moved
 
     # Publication

@@ -196,9 +196,9 @@ class PublishedMovingFrames:
         self._transforms.set_stamps(stamp_ns, rows)
         return rows
 
-    def last_stamp_ns(self, rows: NDArray[np.intp]) -> int:
-        """Return the last stamp that all of some moving transforms have reached."""
-        return int(self._stamps_ns[rows].min())
+    def last_stamps_ns(self, rows: NDArray[np.intp]) -> NDArray[np.int64]:
+        """Return the last stamp of each of some moving transforms."""
+        return self._stamps_ns[rows]
 
     def forget_stamps(self) -> None:
         """Accept any stamp next, after time has jumped back."""

@@ -17,7 +17,7 @@ from rclpy.task import Future
 
 from sdf_pose_bridge.names import WORLD_FRAME
 from sdf_pose_bridge.ros.cdr import NANOSECONDS, StampedPose
-from sdf_pose_bridge.ros.state_messages import add_newest, Effect, Effects, Message, StateSource
+from sdf_pose_bridge.ros.state_messages import Effects, Message, StateSource
 
 LONGEST_CALL_S = 5.0
 """Longest time to wait for an answer; then the simulator is asked again."""
@@ -83,13 +83,10 @@ class Simulator(StateSource):
     def has_answers(self) -> bool:  # noqa: D102 - as in the base class
         return bool(self._answers)
 
-    def take(  # noqa: D102 - as in the base class
-        self, effects: Effects, newest: dict[Effect, Message],
-    ) -> bool:
+    def messages(self, effects: Effects) -> Sequence[Message] | None:  # noqa: D102 - as above
         if not self._answers:
-            return False
-        add_newest(self.messages_from_poses(_poses(self._answers.popleft()), effects), newest)
-        return True
+            return None
+        return self.messages_from_poses(_poses(self._answers.popleft()), effects)
 
     def _ask(self) -> None:
         now = time.monotonic()

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 import math
 import time
@@ -55,17 +55,17 @@ _WARNING_PERIOD_S = 10.0
 class Effect:
     """The degrees of freedom and the transforms that messages with the same names change."""
 
-    names: SerializedNames
-    """The names of joints; empty for poses of models."""
+    source: StateSource
     selection: Selection
     """The degrees of freedom."""
-    rows: NDArray[np.intp]
+    names: SerializedNames | None = None
+    """The names of joints; None for poses of models."""
+    rows: NDArray[np.intp] = field(default_factory=lambda: np.array([], np.intp))
     """The moving transforms to publish."""
     reported_count: int = -1
     """Number of reported degrees of freedom when these were found; -1 if they were not."""
     late_after_ns: int = 0
-    """The stamp of the transforms that the last message could not move, as its own is older; 0 if
-    it has moved them."""
+    """The oldest last stamp of the transforms when a message moved none, as its own is older."""
     late_since: float = 0.0
     """Monotonic time in s since which there have been only such messages and this stamp."""
 
@@ -73,7 +73,6 @@ class Effect:
 class Message(NamedTuple):
     """The fields of a message that are read, and its effect."""
 
-    source: StateSource
     effect: Effect
     values: NDArray[np.float64]
     """A position for each name; or the poses of models, shape (k, 7)."""
@@ -83,24 +82,32 @@ class Message(NamedTuple):
     """The frame in which the pose of a single model is given; empty for the root frame."""
 
 
+class Lateness(NamedTuple):
+    """Messages of a source that move nothing, as their stamps are old."""
+
+    line: str
+    rows: NDArray[np.intp]
+    """The transforms that have waited longest for a newer stamp."""
+    last_ns: int
+    """Their last stamp."""
+
+
 class StateSource:
     """
     A source of messages about joints or models.
 
     :param name: its full name, for messages.
+    :param model: the model that all messages are about; empty for any.
     """
 
     subscription: Subscription | None = None
     """The subscription for whose messages to wait."""
 
-    def __init__(self, node: Node, name: str) -> None:
+    def __init__(self, node: Node, name: str, model: str = '') -> None:
         self.name = name
+        self.model = model
         self.last_ns = 0
         """Time of the node when the last message was used; the caller sets it."""
-        self.late = ''
-        """A line about messages that move nothing, as their stamps are old; or empty."""
-        self.late_dofs: list[int] = []
-        """The degrees of freedom that they would move."""
         self._logger = node.get_logger()
         self._warnings_due: dict[str, float] = {}
         self._reported_names: set[str] = set()
@@ -110,6 +117,10 @@ class StateSource:
         """Whether messages wait that no subscription has."""
         return False
 
+    def messages(self, effects: Effects) -> Sequence[Message] | None:
+        """Take a message; return what it has for each of its effects, or None if there is none."""
+        raise NotImplementedError
+
     def take(self, effects: Effects, newest: dict[Effect, Message]) -> bool:
         """
         Take a message.
@@ -117,7 +128,12 @@ class StateSource:
         :param newest: gets it, unless the one with the same effect there is newer.
         :return: whether there was one.
         """
-        raise NotImplementedError
+        messages = self.messages(effects)
+        for message in messages or ():
+            known = newest.get(message.effect, message)
+            if not 0 < message.stamp_ns < known.stamp_ns:
+                newest[message.effect] = message
+        return messages is not None
 
     def warn_about_invalid(self, names: Sequence[str]) -> None:
         """Log the joints or models whose values cannot be used, if there are any."""
@@ -134,17 +150,6 @@ class StateSource:
             self._logger.warning(
                 f'poses of {names_in_line([model])} come from {sources[0]} and from {self.name}; '
                 'the one with the newest stamp counts')
-
-    def begin_lateness(self, line: str, dofs: list[int]) -> None:
-        """Log that messages move nothing, as their stamps are old."""
-        self.late, self.late_dofs = line, dofs
-        self.warn('stamps', lambda: line)
-
-    def end_lateness(self, dofs: list[int]) -> None:
-        """Log that messages move something again, if they are those that moved nothing."""
-        if dofs == self.late_dofs:
-            self.late = ''
-            self._logger.info(f'messages from {self.name} move frames again')
 
     def warn(self, about: str, text: Callable[[], str]) -> bool:
         """Log a warning, unless the last one about the same was not long ago."""
@@ -176,7 +181,7 @@ class StateSource:
             frame_id = '' if effects.is_root(pose.frame_id) else pose.frame_id
             if model is None:
                 unknown.append(pose.child_frame_id)
-            elif frame_id and not effects.knows_frame(frame_id):
+            elif frame_id and not effects.lookup.knows(frame_id):
                 others.append(frame_id)
             elif not abs(math.hypot(*pose.pose[3:]) - 1.0) <= MOST_OFF_UNIT:
                 invalid.append(pose.pose)
@@ -199,17 +204,9 @@ class StateSource:
                 f'a pose from {self.name} is ignored: {invalid[0]} has no quaternion of length 1'))
         return [
             Message(
-                self, effects.of_models(tuple(sorted(group))),
+                effects.of_models(tuple(sorted(group)), self),
                 np.array([group[dof] for dof in sorted(group)]), stamp_ns, frame_id)
             for (stamp_ns, frame_id, _), group in groups.items()]
-
-
-def add_newest(messages: Iterable[Message], newest: dict[Effect, Message]) -> None:
-    """Add messages, unless one with the same effect is newer."""
-    for message in messages:
-        known = newest.get(message.effect, message)
-        if not 0 < message.stamp_ns < known.stamp_ns:
-            newest[message.effect] = message
 
 
 class Effects:
@@ -225,14 +222,14 @@ class Effects:
         self, frames: PublishedMovingFrames, lookup: PoseLookup,
         root_patterns: Sequence[str] = (),
     ) -> None:
-        self.positions = frames.positions
+        self.lookup = lookup
+        self._positions = frames.positions
         self._frames = frames
-        self._lookup = lookup
         self._root_patterns = root_patterns
-        # By the model and the names, or by the degrees of freedom of free models.
-        self._effects: dict[tuple[str, tuple[str, ...]] | tuple[int, ...], Effect] = {}
-        self._are_roots: dict[str, bool] = {}
+        # By the source, and the names of joints or the degrees of freedom of models.
+        self._effects: dict[tuple[StateSource, tuple[object, ...]], Effect] = {}
         tree, motion = frames.tree, frames.frames.motion
+        self._roots = ('', tree.root_frame, tree.world)
         free_models = dict(enumerate(motion.free_models, len(motion.dofs)))
         ids = dict(zip(tree.elements.tolist(), tree.frame_ids, strict=True))
         self.models = {
@@ -241,61 +238,50 @@ class Effects:
         """The degrees of freedom of free models, by their names and by their frame ids."""
         self.only_model = next(iter(free_models)) if len(free_models) == 1 else None
         """The degree of freedom of the only free model; None if there is not exactly one."""
-        self.last: dict[str, Effect] = {}
+        self.last: dict[StateSource, Effect] = {}
         """The effect of the last message on each topic of joint states, as far as it is kept."""
+        self._late: dict[StateSource, Lateness] = {}
         self._size = 0
 
-    def find(
-        self, names: SerializedNames, source: StateSource, model: str,
-    ) -> tuple[Effect, list[str]]:
-        """
-        Find the effect of the names of joints.
-
-        :param model: the top-level model whose joints they name; empty for all joints.
-        :return: the effect; and the unknown and ambiguous names, if it was not kept.
-        """
-        unknown = []
-        found = self._effects.get((model, names.names))
+    def of_joints(self, names: SerializedNames, source: StateSource) -> Effect:
+        """Return the effect of positions of joints; log unknown and ambiguous names."""
+        found = self._effects.get((source, names.names))
         if found is None:
-            found = Effect(
-                names, self.positions.selection(names.names, model), np.array([], np.intp))
-            unknown = self.positions.unknown(names.names, model)
+            model = source.model
+            found = Effect(source, self._positions.selection(names.names, model), names)
             self._make_room(BYTES_OF_OBJECTS + len(names.data))
-            self._effects[model, names.names] = found
-        self.last[source.name] = found
-        return found, unknown
+            self._effects[source, names.names] = found
+            unknown = self._positions.unknown(names.names, model)
+            if unknown:
+                where = f' in model "{model}"' if model else ''
+                source.warn('names', lambda: (
+                    f'{source.name} has {names_in_line(unknown)}, not the name of one moving '
+                    f'joint{where}{self._positions.hint(unknown[0], model)}'))
+        self.last[source] = found
+        return found
 
-    def of_models(self, dofs: tuple[int, ...]) -> Effect:
+    def of_models(self, dofs: tuple[int, ...], source: StateSource) -> Effect:
         """Return the effect of poses of free models."""
-        found = self._effects.get(dofs)
+        found = self._effects.get((source, dofs))
         if found is None:
             self._make_room(BYTES_OF_OBJECTS + _BYTES_OF_MODEL * len(dofs))
-            found = self._effects[dofs] = Effect(
-                SerializedNames((), b''), self.positions.selection_of_models(dofs),
-                np.array([], np.intp))
+            found = self._effects[source, dofs] = Effect(
+                source, self._positions.selection_of_models(dofs))
         return found
 
     def rows(self, effect: Effect) -> NDArray[np.intp]:
         """Return the transforms that a message moves, and those of what is where the file is."""
-        if effect.reported_count != self.positions.reported_count and effect.selection.changed:
-            effect.reported_count = self.positions.reported_count
+        reported_count = self._positions.reported_count
+        if effect.reported_count != reported_count and effect.selection.changed:
+            effect.reported_count = reported_count
             effect.rows = self._frames.rows_from_dofs(effect.selection.changed)
             self._make_room(effect.rows.nbytes)
         return effect.rows
 
     def is_root(self, frame_id: str) -> bool:
         """Return whether a frame id in the header of a pose means the root frame."""
-        found = self._are_roots.get(frame_id)
-        if found is None:
-            self._make_room(BYTES_OF_OBJECTS + len(frame_id))
-            tree = self._frames.tree
-            found = self._are_roots[frame_id] = frame_id in ('', tree.root_frame, tree.world) or (
-                any(fnmatchcase(frame_id, pattern) for pattern in self._root_patterns))
-        return found
-
-    def knows_frame(self, frame_id: str) -> bool:
-        """Return whether a pose of a model can be given in a frame other than the root frame."""
-        return self._lookup.knows(frame_id)
+        return frame_id in self._roots or any(
+            fnmatchcase(frame_id, pattern) for pattern in self._root_patterns)
 
     def values(self, message: Message) -> NDArray[np.float64]:
         """
@@ -306,41 +292,43 @@ class Effects:
         """
         if not message.frame_id:
             return message.values
-        frame = self._lookup.pose_beside(message.frame_id, message.effect.selection.changed[0])
+        frame = self.lookup.pose_beside(message.frame_id, message.effect.selection.changed[0])
         return np.array([pose_product(frame, Pose(*message.values[0].tolist()))])
 
-    def note_lateness(self, message: Message, stamp_ns: int) -> None:
+    def note_lateness(self, effect: Effect, stamp_ns: int) -> None:
         """
         Report messages whose stamps are old, if nothing has moved their transforms for a time.
 
-        :param message: one that moves nothing.
+        :param effect: that of one that moves nothing.
         :param stamp_ns: its stamp, or the time of the node, in nanoseconds.
         """
-        source, effect, now = message.source, message.effect, time.monotonic()
-        last_ns = self._frames.last_stamp_ns(effect.rows)
+        source, now = effect.source, time.monotonic()
+        stamps_ns = self._frames.last_stamps_ns(effect.rows)
+        last_ns = int(stamps_ns.min())
         if last_ns - stamp_ns < _LEAST_AGE_NS or last_ns != effect.late_after_ns:
             # Others may move them, such as a second publisher with newer stamps.
             effect.late_since, effect.late_after_ns = now, last_ns
-        elif not source.late and now - effect.late_since > LATE_S:
-            dofs = effect.selection.changed
-            source.begin_lateness(
-                f'messages from {source.name} move nothing, for example '
-                f'{names_in_line([self.positions.names[dofs[0]]])}: their stamps are '
-                f'{(last_ns - stamp_ns) / NANOSECONDS:.3f} s older than the last one; set the '
-                'clock of the publisher, and restart this node if that stamp was wrong, or set '
-                'ignore_timestamp:=true', dofs)
+        elif now - effect.late_since > LATE_S and not self.line_about_lateness(source):
+            first = self._positions.names[effect.selection.changed[0]]
+            line = (
+                f'messages from {source.name} move nothing, for example {names_in_line([first])}: '
+                f'their stamps are {(last_ns - stamp_ns) / NANOSECONDS:.3f} s older than the last '
+                'one; set the clock of the publisher, and restart this node if that stamp was '
+                'wrong, or set ignore_timestamp:=true')
+            self._late[source] = Lateness(line, effect.rows[stamps_ns == last_ns], last_ns)
+            source.warn('stamps', lambda: line)
 
-    def end_lateness(self, message: Message) -> None:
-        """Note that a message moves something."""
-        message.effect.late_after_ns = 0
-        if message.source.late:
-            message.source.end_lateness(message.effect.selection.changed)
+    def line_about_lateness(self, source: StateSource) -> str:
+        """Return the line about messages that move nothing; '' if what they name moves again."""
+        late = self._late.get(source)
+        if late is None or (self._frames.last_stamps_ns(late.rows) != late.last_ns).any():
+            return ''
+        return late.line
 
     def _make_room(self, size: int) -> None:
         """Forget everything if it would be too much."""
         self._size += size
         if self._size > MOST_BYTES:
             self._effects.clear()
-            self._are_roots.clear()
             self.last.clear()
             self._size = size

@@ -15,13 +15,7 @@ from sdf_pose_bridge.ros.log_lines import names_in_line
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.simulator import Simulator
 from sdf_pose_bridge.ros.state_messages import StateSource
-from sdf_pose_bridge.ros.state_topic import (
-    JOINT_STATE,
-    POSE_TYPES,
-    state_topic,
-    StateTopic,
-    TopicKey,
-)
+from sdf_pose_bridge.ros.state_topic import JOINT_STATE, POSE_TYPES, StateTopic, TopicKey
 from sdf_pose_bridge.ros.topic_names import StateTopics
 
 SEARCH_PERIOD_S = 1.0
@@ -126,7 +120,7 @@ class StateSources:
 
     def _open(self, key: TopicKey) -> None:
         try:
-            self._topics[key] = state_topic(self._node, key)
+            self._topics[key] = StateTopic(self._node, key)
         except (RuntimeError, ValueError) as error:
             # Security may forbid it. The rest of the message names lines of the source of ROS.
             reason = str(error).partition(', at /')[0]

@@ -17,14 +17,7 @@ from sensor_msgs.msg import JointState
 from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge.ros.cdr import joint_state_from_bytes, poses_from_bytes
-from sdf_pose_bridge.ros.log_lines import names_in_line
-from sdf_pose_bridge.ros.state_messages import (
-    add_newest,
-    Effect,
-    Effects,
-    Message,
-    StateSource,
-)
+from sdf_pose_bridge.ros.state_messages import Effects, Message, StateSource
 from sdf_pose_bridge.ros.wait_set import NoExecutor, take_message
 
 MOST_WAITING = 100
@@ -60,7 +53,7 @@ class TopicKey(NamedTuple):
     name: str
     """The name of the topic, before it is remapped."""
     model: str
-    """The model that the messages are about; empty for any."""
+    """The top-level model of joint states, or the free model of poses; empty for any."""
     type_name: str
     """:data:`JOINT_STATE`, or one of :data:`POSE_TYPES`."""
 
@@ -68,80 +61,51 @@ class TopicKey(NamedTuple):
 class StateTopic(StateSource):
     """A topic of messages about joints or models."""
 
-    def __init__(self, node: Node, key: TopicKey, message_class: type) -> None:
-        self.model = key.model
+    def __init__(self, node: Node, key: TopicKey) -> None:
+        self._pose_type = POSE_TYPES.get(key.type_name)
         # A best effort and volatile subscription is compatible with every publisher, so there is
         # nothing to report unless parameters change that.
         self.subscription = node.create_subscription(
-            message_class, key.name, lambda _: None,
+            JointState if self._pose_type is None else self._pose_type.message_class,
+            key.name, lambda _: None,
             QoSProfile(depth=MOST_WAITING, reliability=ReliabilityPolicy.BEST_EFFORT),
             callback_group=NoExecutor(), raw=True,
             event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
             # Without the depth, which the node chooses.
             qos_overriding_options=QoSOverridingOptions((
                 QoSPolicyKind.RELIABILITY, QoSPolicyKind.DURABILITY)))
-        super().__init__(node, self.subscription.topic_name)
+        super().__init__(node, self.subscription.topic_name, key.model)
 
-    def take(  # noqa: D102 - as in the base class
-        self, effects: Effects, newest: dict[Effect, Message],
-    ) -> bool:
+    def messages(self, effects: Effects) -> Sequence[Message] | None:  # noqa: D102 - as above
         data = take_message(self.subscription)
-        if data is not None:
-            add_newest(self.read(data, effects), newest)
-        return data is not None
+        return None if data is None else self.read(data, effects)
 
     def read(self, data: bytes, effects: Effects) -> Sequence[Message]:
         """Read a serialized message; return nothing, with a warning, if it cannot be used."""
         try:
-            return self._messages(data, effects)
+            if self._pose_type is None:
+                return (self._joint_states(data, effects),)
+            return self._poses(data, self._pose_type, effects)
         except ValueError as error:
             reason = str(error)
             self.warn('message', lambda: f'a message on {self.name} is ignored: {reason}')
             return ()
 
-    def _messages(self, data: bytes, effects: Effects) -> Sequence[Message]:
-        raise NotImplementedError
-
-
-class JointStateTopic(StateTopic):
-    """A topic of joint states; its model is a top-level model of a world."""
-
-    def __init__(self, node: Node, key: TopicKey) -> None:
-        super().__init__(node, key, JointState)
-
-    def _messages(self, data: bytes, effects: Effects) -> Sequence[Message]:
-        effect = effects.last.get(self.name)
+    def _joint_states(self, data: bytes, effects: Effects) -> Message:
+        effect = effects.last.get(self)
         stamp_ns, names, positions = joint_state_from_bytes(
             data, None if effect is None else effect.names)
         if effect is None or names is not effect.names:
-            effect, unknown = effects.find(names, self, self.model)
-            if unknown:
-                where = f' in model "{self.model}"' if self.model else ''
-                self.warn('names', lambda: (
-                    f'{self.name} has {names_in_line(unknown)}, not the name of one moving joint'
-                    f'{where}{effects.positions.hint(unknown[0], self.model)}'))
-        return (Message(self, effect, positions, stamp_ns),)
+            effect = effects.of_joints(names, self)
+        return Message(effect, positions, stamp_ns)
 
-
-class ModelPoseTopic(StateTopic):
-    """A topic of poses of models; its model is a free model."""
-
-    def __init__(self, node: Node, key: TopicKey) -> None:
-        self._type = POSE_TYPES[key.type_name]
-        super().__init__(node, key, self._type.message_class)
-
-    def _messages(self, data: bytes, effects: Effects) -> Sequence[Message]:
+    def _poses(self, data: bytes, pose_type: PoseType, effects: Effects) -> Sequence[Message]:
         poses = poses_from_bytes(
-            data, has_child=self._type.has_child, is_sequence=self._type.is_sequence)
-        if self._type.is_sequence:
+            data, has_child=pose_type.has_child, is_sequence=pose_type.is_sequence)
+        if pose_type.is_sequence:
             return self.messages_from_poses(poses, effects)
         dof = effects.models.get(self.model) if self.model else effects.only_model
         if dof is None:
             msg = 'no single model is meant; {model} in its entry of model_pose_topics names one'
             raise ValueError(msg)
         return self.messages_from_poses(poses, effects, dof)
-
-
-def state_topic(node: Node, key: TopicKey) -> StateTopic:
-    """Subscribe to a topic."""
-    return (JointStateTopic if key.type_name == JOINT_STATE else ModelPoseTopic)(node, key)

@@ -13,7 +13,7 @@ from sdf_pose_bridge.errors import JointPositionError
 from sdf_pose_bridge.ros.cdr import StampedPose
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
-from sdf_pose_bridge.ros.state_messages import add_newest, Effects, StateSource
+from sdf_pose_bridge.ros.state_messages import Effects, StateSource
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
@@ -99,9 +99,11 @@ def test_a_frame_without_a_pose_of_its_own_is_refused(models, child, frame_id, w
 
 
 def test_the_newest_message_of_a_model_counts(models):
+    waiting = [models.read(stamp_ns=stamp_ns) for stamp_ns in (5, 6, 4)]
+    models.source.messages = lambda _effects: waiting.pop() if waiting else None
     newest = {}
-    for stamp_ns in (4, 6, 5):
-        add_newest(models.read(stamp_ns=stamp_ns), newest)
+    while models.source.take(models.effects, newest):
+        pass
     assert [each.stamp_ns for each in newest.values()] == [6]
 
 
