@@ -41,6 +41,7 @@ from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
 from sdf_pose_bridge.ros.state_messages import Effect, Effects, Message, StateSource
 from sdf_pose_bridge.ros.state_sources import StateSources
+from sdf_pose_bridge.ros.state_topic import StateTopic
 from sdf_pose_bridge.ros.topic_names import StateTopics
 from sdf_pose_bridge.ros.wait_set import WaitSet
 from sdf_pose_bridge.tf.lookup import PoseLookup
@@ -129,11 +130,10 @@ class JointStates:
 
         When this returns, the thread publishes nothing of the frames before.
         """
+        target = _Target(frames, lookup, (), settings)
         unwanted = self._sources.follow(topics, settings, frames.positions.free_models)
-        result_from_executor(
-            self._node, lambda: self._follow_sources(_Target(frames, lookup, (), settings)))
+        result_from_executor(self._node, lambda: self._follow_sources(unwanted, target))
         self.wait()
-        self._sources.close(unwanted)
 
     def publish_topics(self) -> None:
         """Publish all moving frames on ``~/transforms`` and ``~/poses/...`` soon."""
@@ -173,9 +173,16 @@ class JointStates:
         late = list(filter(None, map(self._effects.line_about_lateness, target.sources)))
         return Unreported(len(joints), (*joints, '')[0], topics, models, late)
 
-    def _follow_sources(self, target: _Target | None = None) -> None:
-        """Follow all sources. The executor alone does this, as it may find a new one itself."""
+    def _follow_sources(
+        self, unwanted: Sequence[StateTopic], target: _Target | None = None,
+    ) -> None:
+        """
+        Follow all sources. The executor alone does this, as it may find a new one itself.
+
+        :param unwanted: topics that are destroyed when the thread no longer awaits them.
+        """
         self._next_target = (target or self._next_target)._replace(sources=self._sources.sources)
+        self._calls.append(lambda: self._sources.close(unwanted))
         self._wake()
 
     def _wake(self) -> None:

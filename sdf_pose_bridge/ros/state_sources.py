@@ -26,14 +26,16 @@ class StateSources:
     """
     The sources of messages that are wanted.
 
-    The loader calls :meth:`follow` and :meth:`close`; the executor of the node calls the rest.
+    The loader calls :meth:`follow`, and the executor of the node calls the rest.
 
-    :param changed: called by the executor when it has found a source.
+    :param changed: called by the executor when it has found other sources, with the topics to
+        :meth:`close` when nothing awaits them.
     :param wake: called when the simulator has answered.
     """
 
     def __init__(
-        self, node: Node, changed: Callable[[], None], wake: Callable[[], None],
+        self, node: Node, changed: Callable[[Sequence[StateTopic]], None],
+        wake: Callable[[], None],
     ) -> None:
         self._node = node
         self._logger = node.get_logger()
@@ -69,7 +71,7 @@ class StateSources:
         Change what is wanted.
 
         :param models: the scoped names of the free models.
-        :return: the topics that are no longer wanted, to be closed when nothing awaits them.
+        :return: the topics that are no longer wanted, to :meth:`close` when nothing awaits them.
         """
         if topics.warnings != self._wanted.warnings:
             for line in topics.warnings:
@@ -83,10 +85,10 @@ class StateSources:
         return unwanted
 
     def close(self, topics: Sequence[StateTopic]) -> None:
-        """Destroy the subscriptions of topics that :meth:`follow` has returned."""
+        """Have the executor destroy subscriptions; any thread may call this."""
         for topic in topics:
-            result_from_executor(self._node, functools.partial(
-                self._node.destroy_subscription, topic.subscription))
+            assert self._node.executor is not None
+            self._node.executor.create_task(self._node.destroy_subscription, topic.subscription)
 
     def end(self) -> None:
         """Destroy all subscriptions."""
@@ -129,21 +131,28 @@ class StateSources:
     def _find_publishers(self) -> None:
         """Subscribe to topics of poses with the types with which they are published."""
         types = dict(self._node.get_topic_names_and_types())
-        current = {
-            key[:2]: key.type_name for key in self._topics if key.type_name != JOINT_STATE}
-        count = len(self._topics)
+        current = {key[:2]: key for key in self._topics if key.type_name != JOINT_STATE}
+        before = self._topics.copy()
         for place in self._wanted.model_poses.items():
-            name = self._node.resolve_topic_name(place[0])
-            if types.get(name, []) in ([], [current.get(place)]):
+            name, key = self._node.resolve_topic_name(place[0]), current.get(place)
+            known_types = [key.type_name] if key else []
+            if types.get(name, []) in ([], known_types):
                 continue
             found = sorted({
                 each.topic_type for each in self._node.get_publishers_info_by_topic(name)})
-            if len(found) == 1 and found[0] in POSE_TYPES and place not in current:
-                self._open(TopicKey(*place, found[0]))
-            elif found not in ([], [current.get(place)]) and (name, *found) not in self._reported:
+            if found in ([], known_types):
+                continue
+            if len(found) == 1 and found[0] in POSE_TYPES:
+                # A topic has one type in a process, so a subscription has to be destroyed before
+                # the next search makes one of another type.
+                if key:
+                    del self._topics[key]
+                else:
+                    self._open(TopicKey(*place, found[0]))
+            elif (name, *found) not in self._reported:
                 self._reported.add((name, *found))
                 self._logger.warning(
                     f'{name} has messages of {names_in_line(found)}; topics in model_pose_topics '
                     f'must have one type, which is one of {names_in_line(list(POSE_TYPES))}')
-        if len(self._topics) != count:
-            self._changed()
+        if self._topics != before:
+            self._changed([before[key] for key in before.keys() - self._topics.keys()])

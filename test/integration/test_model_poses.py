@@ -92,7 +92,7 @@ def test_a_topic_of_another_type_is_reported_once(follow, tracker):
     assert sum('PointStamped' in line for line in bridge.lines) == 1
 
 
-def test_a_tracker_may_come_late_stop_and_come_back(follow, tf, tracker):
+def test_a_tracker_may_come_late_stop_and_come_back_with_another_type(follow, tf, tracker):
     bridge = follow()
     bridge.wait_for_line('3 models have no pose yet, for example "cart"')
     answer = tf.listener.call(
@@ -102,7 +102,7 @@ def test_a_tracker_may_come_late_stop_and_come_back(follow, tf, tracker):
     tracker.stop()
     tf.listener.wait(lambda: not tf.listener.node.count_publishers(CART), lambda: 'its end')
     assert pose_of(tf, 'cart').x == 3.0
-    tracker.move(4.0)
+    tracker.move(4.0, message_type=Odometry)
 
 
 def test_older_poses_count_after_simulated_time_has_jumped_back(follow, tf, tracker):

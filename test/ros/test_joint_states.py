@@ -524,9 +524,13 @@ def test_an_unreported_joint_is_named_with_the_topics_that_can_name_it(following
 def test_topics_come_and_go_with_the_frames(following):
     following.start(TWO_ARMS, topics=StateTopics({'joint_states': '', 'a/j': 'a'}))
 
+    def subscriptions():
+        return {each.topic_name: each for each in following.node.subscriptions}
+
     def subscribed(topics):
         following.follow(following.frames, StateTopics(topics), EACH)
-        return {each.topic_name: each for each in following.node.subscriptions}
+        following.wait(lambda: len(subscriptions()) == len(topics))
+        return subscriptions()
 
     before = subscribed({'joint_states': '', 'a/j': 'a'})
     after = subscribed({'joint_states': '', 'a/j': 'a', 'b/j': 'b'})

@@ -26,15 +26,11 @@ class Sources:
 
     def __init__(self, node, other, beside):
         self._node, self._other, self._beside = node, other, beside
-        self.changes = 0
-        self.sources = StateSources(node, self._count, lambda: None)
+        self.sources = StateSources(node, lambda topics: self.sources.close(topics), lambda: None)
 
     def follow(self, *arguments):
         """Call this method as the loader does."""
         return self._beside(self._node.executor, self.sources.follow, *arguments)
-
-    def _count(self):
-        self.changes += 1
 
     def publish(self, message_type, topic='a/pose'):
         return self._other.create_publisher(message_type, topic, 10)
@@ -50,7 +46,7 @@ class Sources:
         while self.types() != expected:
             assert time.monotonic() < deadline, self.types()
             self.sources._find_publishers()
-            time.sleep(0.01)
+            self._node.executor.spin_once(timeout_sec=0.01)
 
 
 @pytest.fixture(name='sources')
@@ -76,6 +72,18 @@ def test_topics_of_poses_have_the_types_of_their_publishers(sources):
     sources.publish(Odometry, 'b/pose')
     sources.wait_for(a='PoseStamped', b='Odometry')
     assert sources.sources.wanted_count == 3
+
+
+def test_a_topic_that_changes_its_type_is_followed_anew(sources, node, other_context):
+    # A process has one type for a topic.
+    first, second = (rclpy.create_node(name, context=other_context) for name in 'pq')
+    first.create_publisher(PoseStamped, '/a/pose', 10)
+    sources.wait_for(a='PoseStamped')
+    first.destroy_node()
+    second.create_publisher(Odometry, '/a/pose', 10)
+    sources.wait_for(a='Odometry')
+    topics = [each.topic_name for each in node.subscriptions]
+    assert sorted(topics) == ['/a/pose', '/joint_states']
 
 
 @pytest.mark.parametrize(('types', 'words'), [
