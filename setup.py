@@ -144,7 +144,7 @@ setup(
         'view': ['viser>=1.1.1,<1.2', 'trimesh>=5.0,<6', 'pycollada>=0.7.2,<0.10'],
     },
     packages=find_packages(include=[PACKAGE, f'{PACKAGE}.*']),
-    package_data={PACKAGE: ['py.typed']},
+    package_data={PACKAGE: ['py.typed'], f'{PACKAGE}.cli.viewer': ['page.css', 'page.js']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
         (SHARE, ['package.xml']),

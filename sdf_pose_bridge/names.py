@@ -23,6 +23,9 @@ ROOT_FRAME = '__root__'
 MODEL_FRAME = '__model__'
 """The name of the frame of a model in references inside the model."""
 
+PROXY_START, PROXY_END = '_merged__', '__model__'
+"""The beginning and the end of the name of the frame that replaces the frame of a merged model."""
+
 JOINT_SUFFIX = '_joint'
 """Appended to the name of a joint if another element has the name."""
 
@@ -61,6 +64,11 @@ def is_reserved(name: str) -> bool:
     """
     return name == WORLD_FRAME or (
         len(name) >= 4 and name.startswith('__') and name.endswith('__'))
+
+
+def is_name_of_proxy(name: str) -> bool:
+    """Return whether a merge may have made a name."""
+    return name.startswith(PROXY_START) and name.endswith(PROXY_END)
 
 
 def scoped_name(scope: str, name: str) -> str:

@@ -32,7 +32,8 @@ from sdf_pose_bridge.geometry.formats import (
 from sdf_pose_bridge.geometry.poses import Pose, pose_inverse, pose_products, relative_poses
 from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.geometry.sequences import ZYX
-from sdf_pose_bridge.names import printable, shortened
+from sdf_pose_bridge.geometry.units import number_from_text
+from sdf_pose_bridge.names import printable
 
 LINES_AT_A_TIME = 10_000
 """Number of lines that are converted together, so that memory is bounded for any input."""
@@ -184,18 +185,6 @@ def format_in_given_units(source: Format, options: argparse.Namespace) -> Format
         raise CommandError(msg)
     return source._replace(
         half_turn=options.half_turn or source.half_turn, metre=options.metre or source.metre)
-
-
-def number_from_text(text: str) -> float:
-    """Read a number; raise a PoseFormatError for another text."""
-    try:
-        if '_' in text or not text.isascii():
-            # float() accepts 1_000 and digits of all scripts; other readers of poses do not.
-            raise ValueError
-        return float(text)
-    except ValueError:
-        msg = f'{shortened(text)!r} is not a number'
-        raise PoseFormatError(msg) from None
 
 
 def numbers_from_text(text: str, source: Format) -> list[float]:

@@ -23,9 +23,9 @@ from sdf_pose_bridge.cli.printing import (
     print_problems,
     print_table,
     TableRow,
-    Units,
 )
 from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.geometry.units import Units
 from sdf_pose_bridge.scene.comparison import Change, Difference, differences_of_scenes, TOLERANCE
 
 

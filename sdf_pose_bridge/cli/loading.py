@@ -17,10 +17,10 @@ from sdf_pose_bridge.cli.printing import (
     print_json,
     print_problems,
     print_table,
-    Units,
 )
 from sdf_pose_bridge.errors import SdfError, SdfWarning
 from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.units import Units
 from sdf_pose_bridge.names import hint_from_names, printable
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.scene import Scene

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Print problems and poses, for people or other programs: colors, units, formats and files."""
+"""Print problems and tables, for people or other programs: colors, formats and files."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import contextlib
 import csv
 from itertools import chain
 import json
-import math
 import os
 from pathlib import Path
 import shutil
@@ -18,13 +17,9 @@ import sys
 from typing import Any, NamedTuple, TextIO, TypeAlias, TypeVar
 
 from sdf_pose_bridge.errors import SdfError, SdfWarning, UriLookupError
-from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
+from sdf_pose_bridge.geometry.units import DEGREES, METRES, MILLIMETRES, RADIANS
 from sdf_pose_bridge.names import printable, shortened
 from sdf_pose_bridge.problems import by_message
-from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.tf.tree import TfTree
 
 _FORMATS = {
     'text': 'for people, the default',
@@ -105,19 +100,6 @@ def write_text(text: str, path: Path | None) -> None:
         raise CommandError(msg) from error
 
 
-class Unit(NamedTuple):
-    """A unit of lengths or angles, with the number of digits to show."""
-
-    name: str
-    factor: float
-    """Number of these units in a metre or a radian."""
-    digits: int
-
-
-METRES, MILLIMETRES = Unit('m', 1.0, 4), Unit('mm', 1000.0, 1)
-RADIANS, DEGREES = Unit('rad', 1.0, 4), Unit('deg', math.degrees(1.0), 2)
-
-
 _WIDEST_NAME, _NARROWEST_NAME = 80, 8
 _SHORT_KINDS = {'optical frame': 'optical', 'particle_emitter': 'emitter'}
 BELOW = str.maketrans('├└`-', '│   ')
@@ -188,42 +170,6 @@ def _branches(branches: str) -> str:
     except UnicodeEncodeError:
         return branches.replace('├ ', '|-').replace('└ ', '`-').replace('│', '|')
     return branches
-
-
-POSE_LABELS = ('x', 'y', 'z', 'roll', 'pitch', 'yaw')
-"""Labels of the numbers of a pose."""
-
-
-class Units(NamedTuple):
-    """Units of the poses that a command shows."""
-
-    length: Unit = METRES
-    angle: Unit = RADIANS
-
-    @property
-    def of_pose(self) -> list[Unit]:
-        """The units of x, y, z, roll, pitch and yaw."""
-        return 3 * [self.length] + 3 * [self.angle]
-
-    @property
-    def labels(self) -> tuple[str, ...]:
-        """The labels of the columns of a table of poses."""
-        return f'x {self.length.name}', 'y', 'z', f'roll {self.angle.name}', 'pitch', 'yaw'
-
-    def texts(self, pose: Pose, *, fewer_digits: int = 0) -> list[str]:
-        """
-        Write a pose in these units.
-
-        :param fewer_digits: the number of digits to leave out.
-        :return: x, y, z, roll, pitch and yaw, rounded.
-        """
-        texts = []
-        values = (*pose[:3], *rpy_from_quaternion(pose[3:]))
-        for value, unit in zip(values, self.of_pose, strict=True):
-            digits = unit.digits - fewer_digits
-            # Adding zero removes negative zeros.
-            texts.append(f'{round(value * unit.factor, digits) + 0.0:.{digits}f}')
-        return texts
 
 
 def argument_type(
@@ -297,13 +243,6 @@ def print_csv(columns: Sequence[str], records: Iterable[Mapping[str, Any]]) -> N
     csv.writer(sys.stdout, lineterminator='\n').writerows(
         [printable(value) if isinstance(value, str) else value
          for value in map(record.get, columns)] for record in records)
-
-
-def kind_labels_of(scene: Scene, tree: TfTree) -> list[str]:
-    """Return the label of the kind of each frame; ``optical frame`` for those of cameras."""
-    return [
-        'optical frame' if element < 0 else Kind(scene.kinds[element]).label
-        for element in tree.elements.tolist()]
 
 
 def _problem(problem: SdfError | SdfWarning) -> dict[str, Any]:

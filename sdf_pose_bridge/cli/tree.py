@@ -25,7 +25,6 @@ from sdf_pose_bridge.cli.printing import (
     argument_type,
     BELOW,
     Frame,
-    kind_labels_of,
     TableRow,
 )
 from sdf_pose_bridge.errors import SdfWarning
@@ -78,7 +77,7 @@ def _frames_of_tf(
     warnings += tree.warnings
     # The root frame comes first, so the index of each parent is one more than in the tree.
     names = (tree.root_frame, *tree.frame_ids)
-    kinds = ('root', *kind_labels_of(scene, tree))
+    kinds = ('root', *tree.kind_labels(scene))
     parents = [-1, *(tree.parents - ROOT_IS_PARENT).tolist()]
     return _in_branches([
         ({'name': name, 'kind': kind, 'parent': names[parent] if parent >= 0 else None,

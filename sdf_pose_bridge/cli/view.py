@@ -35,10 +35,10 @@ from sdf_pose_bridge.cli.printing import (
     argument_type,
     CommandError,
     print_problems,
-    Units,
 )
-from sdf_pose_bridge.cli.viewer import LIBRARIES
+from sdf_pose_bridge.cli.viewer import LIBRARIES, UntestedViserError
 from sdf_pose_bridge.errors import FileReadError, LimitError, Place, SdfError
+from sdf_pose_bridge.geometry.units import Units
 from sdf_pose_bridge.limited_process import LimitedProcess, ProcessEndedError
 from sdf_pose_bridge.process_limits import FOR_FILES, LimitExceededError
 from sdf_pose_bridge.scene.pose_setting import pose_change
@@ -100,11 +100,14 @@ def run(options: argparse.Namespace) -> int:
         load, read_since_ns = partial(_scene, process, options), time.time_ns()
         scene = load()
         print_problems((), scene.warnings, sys.stderr)
-        pages = viewer.Pages(
-            scene, tf_options_from_arguments(options), 0 if options.output else options.port,
-            Units(options.length_unit, options.angle_unit),
-            viewer.MeshReader(resource_finder(options.resource_paths), process),
-            partial(pose_change, load=load) if options.edit else None)
+        try:
+            pages = viewer.Pages(
+                scene, tf_options_from_arguments(options), 0 if options.output else options.port,
+                Units(options.length_unit, options.angle_unit),
+                viewer.MeshReader(resource_finder(options.resource_paths), process),
+                partial(pose_change, load=load) if options.edit else None)
+        except UntestedViserError as error:
+            raise CommandError(str(error)) from error
         with contextlib.closing(pages):
             for line in pages.reasons:
                 print(f'sdf_pose view: {line}', file=sys.stderr)

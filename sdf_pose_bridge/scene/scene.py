@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sdf_pose_bridge.errors import Place, SdfWarning, UnknownFrameError
-from sdf_pose_bridge.geometry.chains import Indices
+from sdf_pose_bridge.geometry.chains import ends_from_pointers, Indices
 from sdf_pose_bridge.geometry.poses import canonical_relative_pose, Pose, PoseArray
 from sdf_pose_bridge.names import hint_from_names, listed, scoped_name, SEPARATOR
 from sdf_pose_bridge.scene.frame_graph import default_references
@@ -234,6 +234,11 @@ class Scene(ReadOnly):
     def top_level_element(self, index: int) -> int:
         """Return the element below its root that an element is in, or is; of a root itself."""
         return [index, *self.with_ancestors(index)][-2]
+
+    def are_in(self, elements: Sequence[int]) -> NDArray[np.bool_]:
+        """Return whether each element is one of some elements, or in one, shape (n,)."""
+        is_end = np.isin(np.arange(len(self.parents)), elements)
+        return np.take(is_end, ends_from_pointers(np.where(is_end, -1, self.parents)))
 
     def is_static(self, index: int) -> bool:
         """Return whether an element is in a static model, or is one."""

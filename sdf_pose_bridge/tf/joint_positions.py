@@ -294,6 +294,13 @@ class JointPositions:
         self.reported_count = int(np.count_nonzero(self.is_reported))
 
 
+def leading_dofs(scene: Scene) -> list[DegreeOfFreedom]:
+    """Return the degrees of freedom of joints that follow no other one, in file order."""
+    dofs = JointMotion(scene, tf_parents_from_scene(scene)).dofs
+    return sorted((each for each in dofs if each.axis.mimic is None),
+                  key=lambda each: each.joint.element)
+
+
 def scene_at_positions(scene: Scene, positions: Mapping[str, float]) -> Scene:
     """
     Return a scene with its joints at other positions.

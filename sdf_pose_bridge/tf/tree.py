@@ -134,6 +134,12 @@ class TfTree(ReadOnly):
         rows = indices.tolist()
         return [self.parent_ids[row] for row in rows], [self.frame_ids[row] for row in rows]
 
+    def kind_labels(self, scene: Scene) -> list[str]:
+        """Return the label of the kind of each frame; ``optical frame`` for those of cameras."""
+        return [
+            'optical frame' if element < 0 else Kind(scene.kinds[element]).label
+            for element in self.elements.tolist()]
+
     @property
     def transform_count(self) -> int:
         """Number of frames with a transform."""
@@ -257,10 +263,7 @@ def elements_in_model(scene: Scene, name: str) -> NDArray[np.bool_]:
         msg = f'there is no model "{name}" to publish{hint_from_names(name, names)}'
         raise UnknownFrameError(msg, Place(scene.path))
     # Of several models of that name, the first one counts.
-    is_model = np.arange(len(scene.names)) == models[names.index(name)]
-    is_inside: NDArray[np.bool_] = is_model[
-        ends_from_pointers(np.where(is_model, -1, scene.parents))]
-    return is_inside
+    return scene.are_in([models[names.index(name)]])
 
 
 def _warn_of_loops(tf_parents: TfParents, scene: Scene, problems: Problems) -> None:

@@ -37,6 +37,14 @@ def worlds():
     return sdf_pose_bridge.load_text(TWO_WORLDS)
 
 
+@pytest.mark.parametrize(('elements', 'names'), [
+    (['table'], ['table', 'table::top']), (['table::top', 'table'], ['table', 'table::top']),
+    (['sun'], ['sun']), ([], [])])
+def test_elements_that_are_in_others(scene, elements, names):
+    found = scene.are_in([*map(scene.names.index, elements), -1])
+    assert np.array(scene.names)[found].tolist() == names
+
+
 # Unknown names
 
 @pytest.mark.parametrize('name', ['', 'tabel', 'table::', 'table::to', 'w', 'w::table', '::table'])

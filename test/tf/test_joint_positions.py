@@ -8,7 +8,7 @@ from sdf_texts import joint, model_file, world_file
 
 from sdf_pose_bridge.errors import JointPositionError
 from sdf_pose_bridge.scene.loading import load_text
-from sdf_pose_bridge.tf.joint_positions import JointPositions, scene_at_positions
+from sdf_pose_bridge.tf.joint_positions import JointPositions, leading_dofs, scene_at_positions
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 ENDS = '<parent>a</parent><child>b</child>'
@@ -42,6 +42,15 @@ def following(leader='j', axis='axis', name='k'):
     return joint(
         '<parent>b</parent><child>c</child>' + MIMIC.format(leader=leader, axis=axis),
         name, 'revolute')
+
+
+def test_leading_joints_are_in_file_order():
+    joints = ''.join(
+        joint(f'<parent>{ends[0]}</parent><child>{ends[1]}</child><axis/>', ends, 'revolute')
+        for ends in ('da', 'ae', 'db'))
+    scene = load_text(model_file(
+        f'{LINKS}<link name="d"/><link name="e"/>{joints}{following("da")}', version='1.11'))
+    assert [dof.name for dof in leading_dofs(scene)] == ['da', 'ae', 'db']
 
 
 # Names

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 import viser
 
-from sdf_pose_bridge.cli.printing import Unit
+from sdf_pose_bridge import Kind
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.cli.viewer.surfaces import (
@@ -32,8 +32,8 @@ from sdf_pose_bridge.cli.viewer.view_point import (
 )
 from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.geometry.rotations import Floats
+from sdf_pose_bridge.geometry.units import Unit
 from sdf_pose_bridge.names import printable, SEPARATOR, shortened
-from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
 
@@ -71,7 +71,7 @@ class VisiblePart:
         self.shown, self.hidden = shown, frozenset(hidden)
         ids, elements = np.array(tree.frame_ids, object), tree.elements
         is_hidden = np.isin(ids, [*hidden_ids])
-        is_shown = shown.is_in_model & ~shown.is_in(elements[is_hidden].tolist())
+        is_shown = shown.is_in_model & ~scene.are_in(elements[is_hidden].tolist())
         # An optical frame is shown with its parent.
         elements = np.where(elements < 0, elements[np.maximum(tree.parents, 0)], elements)
         self.frames = np.flatnonzero(
@@ -112,7 +112,7 @@ class VisiblePart:
 
     def boxes(self, shown: ShownScene, element: int) -> Floats:
         """Return the boxes around the visuals and collisions in an element, shape (n, 2, 3)."""
-        is_in = shown.is_in([element])[self._bodies]
+        is_in = shown.scene.are_in([element])[self._bodies]
         return np.asarray(boxes_of_surfaces(shown.scene, self.surfaces)[is_in])
 
 

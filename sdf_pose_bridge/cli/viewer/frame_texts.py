@@ -12,20 +12,15 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from sdf_pose_bridge.cli.printing import POSE_LABELS, Units
+from sdf_pose_bridge import Pose, Scene
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.geometry.formats import converted_poses
-from sdf_pose_bridge.geometry.poses import Pose, relative_pose
-from sdf_pose_bridge.names import printable, quoted_names, SEPARATOR
+from sdf_pose_bridge.geometry.poses import relative_pose
+from sdf_pose_bridge.geometry.units import POSE_LABELS, Units
+from sdf_pose_bridge.names import is_name_of_proxy, printable, quoted_names, SEPARATOR
 from sdf_pose_bridge.scene.pose_setting import place_of_pose
-from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.include.merge import is_name_of_proxy
 from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
-
-_ERROR_STYLE = ('color:#e03131;white-space:pre-wrap;overflow-wrap:anywhere;margin:0 1em;'
-                'font-size:0.85em;max-height:30vh;overflow-y:auto')
-_COPIED = 'display:block;user-select:all;white-space:pre-wrap;overflow-wrap:anywhere;'
 
 
 def escaped(text: str) -> str:
@@ -40,9 +35,7 @@ def html_of_data(name: str, value: str) -> str:
 
 def html_of_copy_button(text: str) -> str:
     """Return a button that copies a text."""
-    return (f'<button data-copy="{html.escape(text)}" style="float:right;clear:right;'
-            f'padding:0 4px;margin-left:4px;font-size:0.85em;line-height:1.3;cursor:pointer;'
-            f'border:1px solid;border-radius:3px;opacity:0.6">copy</button>')
+    return f'<button data-copy="{html.escape(text)}">copy</button>'
 
 
 def html_of_frame(shown: ShownScene, frame: int, reference: int, units: Units) -> str:
@@ -80,11 +73,9 @@ def html_of_frame(shown: ShownScene, frame: int, reference: int, units: Units) -
         'Franka matrix': str(franka),
     }
     forms = ''.join(
-        f'<div>{html_of_copy_button(text)}{label}'
-        f'<code style="{_COPIED}">{html.escape(text)}</code></div>'
+        f'<div>{html_of_copy_button(text)}{label}<code>{html.escape(text)}</code></div>'
         for label, text in copied.items())
-    return (f'<div style="font-size:0.8em;margin:0 1em;overflow-wrap:anywhere">'
-            f'{"<br>".join(lines)}{forms}</div>')
+    return f'<div class="description">{"<br>".join(lines)}{forms}</div>'
 
 
 def _text(values: Sequence[float]) -> str:
@@ -151,23 +142,22 @@ def html_of_difference(old: Pose, new: Pose, reference: Pose, units: Units) -> s
         f'<td>{float(after) - float(before):+.{unit.digits}f}</td></tr>'
         for label, unit, before, after in zip(
             POSE_LABELS, units.of_pose, *columns, strict=True))
-    return (f'<table class="difference" cellpadding="1" '
-            f'style="text-align:right">'
-            f'<tr><td></td><td>old</td><td>new</td><td>change</td></tr>{rows}</table>')
+    return (f'<table class="difference"><tr><td></td><td>old</td><td>new</td><td>change</td></tr>'
+            f'{rows}</table>')
 
 
 def html_of_lines(name: str, lines: Iterable[str]) -> str:
     """Return lines in an element of this class; empty if there are none."""
     text = '\n'.join(map(escaped, lines))
-    return text and f'<pre class="{name}" style="{_ERROR_STYLE}">{text}</pre>'
+    return text and f'<pre class="{name}">{text}</pre>'
 
 
 def html_of_reasons(lines: Sequence[str]) -> str:
     """Return the reasons why shapes are not drawn: the first one, and the others on request."""
     if len(lines) < 2:
         return html_of_lines('reasons', lines)
-    return (f'<details class="reasons" style="{_ERROR_STYLE}"><summary>{escaped(lines[0])}; '
-            f'and {len(lines) - 1} more</summary>{html_of_lines("others", lines[1:])}</details>')
+    return (f'<details class="reasons"><summary>{escaped(lines[0])}; and {len(lines) - 1} more'
+            f'</summary>{html_of_lines("others", lines[1:])}</details>')
 
 
 def rows_of_tree(

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 import viser
 
-from sdf_pose_bridge.cli.printing import Unit, Units
 from sdf_pose_bridge.cli.viewer.server import Events
 from sdf_pose_bridge.cli.viewer.shown_scene import JointRange, short_names
+from sdf_pose_bridge.geometry.units import Unit, Units
 from sdf_pose_bridge.names import printable
 
 _STEPS, _STEP_S = 31, 0.05

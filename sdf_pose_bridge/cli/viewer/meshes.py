@@ -21,15 +21,14 @@ import numpy as np
 import trimesh
 from trimesh.resolvers import FilePathResolver
 
-from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge import Limits, SdfError
 from sdf_pose_bridge.limited_process import LimitedProcess, ProcessEndedError
 from sdf_pose_bridge.names import printable, quoted_names, shortened
 from sdf_pose_bridge.process_limits import Allowance, LimitExceededError
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
-from sdf_pose_bridge.sdformat.limits import Limits, Usage
+from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.shapes import Shape
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file, xml_from_bytes
-from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 MOST_BYTES = 100_000_000
 """Size of a mesh with the files that it names."""
@@ -192,7 +191,7 @@ def _scene_from_file(path: str, submesh: str) -> tuple[trimesh.Scene, list[str]]
         raise ValueError(msg)
     usage = Usage(Limits(bytes_read=MOST_BYTES))
     text = bytes_from_file(path, usage)
-    node_names = _node_names(xml_from_bytes(text, path).root) if suffix == '.dae' else {}
+    node_names = _node_names(text, path) if suffix == '.dae' else {}
     options = {}
     if suffix == '.obj' and submesh:
         # As in Gazebo, a group is a part like an object.
@@ -202,10 +201,10 @@ def _scene_from_file(path: str, submesh: str) -> tuple[trimesh.Scene, list[str]]
     return scene, list(_names_of_parts(scene, node_names))
 
 
-def _node_names(root: XmlElement) -> dict[str, list[str]]:
+def _node_names(text: bytes, path: str) -> dict[str, list[str]]:
     """Return the names of the nodes of a DAE file that show each geometry, by its id."""
     names: dict[str, list[str]] = {}
-    for instance in root.iter('instance_geometry'):
+    for instance in xml_from_bytes(text, path).root.iter('instance_geometry'):
         above = (node.get('name') for node in instance.iterancestors('node'))
         names.setdefault(instance.get('url', '')[1:], []).append(next(filter(None, above), ''))
     return names

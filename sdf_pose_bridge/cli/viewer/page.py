@@ -12,8 +12,7 @@ import threading
 
 import viser
 
-from sdf_pose_bridge.cli.printing import DEGREES, RADIANS, Units
-from sdf_pose_bridge.cli.viewer.browser_script import page_with_script
+from sdf_pose_bridge import Scene
 from sdf_pose_bridge.cli.viewer.drawing import Drawing, GROUPS, HIDDEN_AT_FIRST, VisiblePart
 from sdf_pose_bridge.cli.viewer.frame_texts import (
     escaped,
@@ -29,7 +28,7 @@ from sdf_pose_bridge.cli.viewer.frame_texts import (
 from sdf_pose_bridge.cli.viewer.joint_sliders import JointSliders
 from sdf_pose_bridge.cli.viewer.meshes import ALLOWANCE, MeshReader
 from sdf_pose_bridge.cli.viewer.pose_edit import FindChange, PoseEdit
-from sdf_pose_bridge.cli.viewer.server import Events, server_for_its_owner
+from sdf_pose_bridge.cli.viewer.server import Events, page_with_script, server_for_its_owner
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.cli.viewer.view_point import (
     bounds_of_points,
@@ -38,8 +37,8 @@ from sdf_pose_bridge.cli.viewer.view_point import (
     view_in_window,
     view_of_bounds,
 )
+from sdf_pose_bridge.geometry.units import DEGREES, RADIANS, Units
 from sdf_pose_bridge.names import printable
-from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfOptions
 
@@ -52,10 +51,6 @@ _MOST_CHOICES = 1000
 _PANEL_WIDTH, _PANEL_PART, _LEAST_WIDTH = 360, 0.35, 720
 """The largest width of the panel in pixels and as a part of a window, and the least width of a
 window in which it is open at first."""
-_ROWS_STYLE = ('<style>.rows{max-height:30vh;overflow:auto;margin:0 1em;font-size:0.8em}'
-               '.rows div{display:flex;white-space:pre} .rows label{flex:1}'
-               '.rows [data-ask]{cursor:pointer} .rows :is(b, i){width:1.2em;color:#4dabf7}'
-               '.rows .selected{font-weight:bold}</style>')
 _SIGNS = {'model': '\u25a2', 'link': '\u25cf', 'sensor': '\u25c6'}
 """The signs of the kinds of frames; other frames have a cross."""
 _EYES, _FOLDS = ('\u25c9', '\u25cb'), ('\u25be', '\u25b8')
@@ -127,7 +122,7 @@ class SelectedFrame:
             for frame, depth, text, has_children in rows)
         if not self._search.value and len(rows) < len(ids):
             content += f'{len(ids) - len(rows)} more, to be found by the search'
-        self._rows.content = f'{_ROWS_STYLE}<div class="rows">{content}</div>'
+        self._rows.content = f'<div class="rows">{content}</div>'
 
     def describe(self, html: str) -> None:
         """Show the description of the selected frame; empty for none."""

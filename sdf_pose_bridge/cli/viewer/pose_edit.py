@@ -11,19 +11,15 @@ from typing import TypeAlias
 
 import viser
 
-from sdf_pose_bridge.cli.convert import number_from_text
-from sdf_pose_bridge.cli.printing import POSE_LABELS, Units
+from sdf_pose_bridge import Pose, Scene, scene_at_positions, SdfError
 from sdf_pose_bridge.cli.viewer.frame_texts import escaped, html_of_difference, html_of_lines
 from sdf_pose_bridge.cli.viewer.server import Events
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
-from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.formats import converted_poses, POSE_FORMATS, PoseFormatError
-from sdf_pose_bridge.geometry.poses import Pose, pose_product, relative_pose
+from sdf_pose_bridge.geometry.poses import pose_product, relative_pose
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
+from sdf_pose_bridge.geometry.units import number_from_text, POSE_LABELS, Units
 from sdf_pose_bridge.scene.pose_setting import Measure, PoseChange
-from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.file_change import FileChange
-from sdf_pose_bridge.tf.joint_positions import scene_at_positions
 
 FindChange: TypeAlias = Callable[[Scene, int, Pose, Measure], PoseChange]
 """Finds a change as :func:`~sdf_pose_bridge.scene.pose_setting.pose_change` does."""
@@ -108,6 +104,11 @@ class PoseEdit:
         return self._change.scene if self._change is not None and is_known else None
 
     @property
+    def _is_new(self) -> bool:
+        """Whether there is a new pose that is not written."""
+        return self.pose is not None and not self._is_written
+
+    @property
     def _pose(self) -> Pose:
         return self.pose or self._target[1]
 
@@ -115,14 +116,12 @@ class PoseEdit:
     def actions(self) -> dict[str, Callable[[], object]]:
         """The actions that are possible now, by the labels to click."""
         actions: dict[str, Callable[[], object]] = {}
-        if self.pose is not None and not self._is_written:
+        if self._is_new and not self._refusal:
             actions['write to file'] = self._write_pose
-        if self._refusal:
-            actions = {}
-        if self._refusal or actions:
-            actions['cancel'] = lambda: self._take(None)
+        if self._is_new or self._refusal:
+            actions['cancel'] = partial(self._take, None)
         if self._undone is not None:
-            actions['undo the last write'] = partial(self._write, self._undone.file, None)
+            actions['undo the last write'] = partial(self._write, self._undone, None)
         return actions
 
     @property
@@ -130,9 +129,9 @@ class PoseEdit:
         """The new pose beside the one in the file, errors, and labels to click."""
         text = '' if self._change is None or self.pose else (
             '<div>drag the arrows or type numbers to move it</div>')
-        if self.pose is not None and not self._is_written:
+        if self._is_new:
             text += html_of_difference(
-                self._target[1], self.pose, self._reference, self._shown_for[2])
+                self._target[1], self._pose, self._reference, self._shown_for[2])
         if self._undone is not None:
             path = Path(self._undone.file.path)
             text += f'<div>written to {escaped(path.name)}:{self._undone.line}</div>'
@@ -207,12 +206,12 @@ class PoseEdit:
         self._take_numbers()
         self.look_ahead()
         if self._change is not None and not self._errors and not self._refusal:
-            file = self._change.file
-            self._write(file, self._change._replace(file=file.undone))
+            self._write(
+                self._change, self._change._replace(file=self._change.file.undone))
 
-    def _write(self, change: FileChange, undone: PoseChange | None) -> None:
+    def _write(self, change: PoseChange, undone: PoseChange | None) -> None:
         try:
-            change.write()
+            change.file.write()
             self._undone, self._is_written, self._notes = undone, True, ()
         except SdfError as error:
             self._notes = tuple(map(str, error.errors))

@@ -9,6 +9,7 @@ Private names of viser are used only here.
 from __future__ import annotations
 
 from collections.abc import Callable
+import html
 from http import HTTPStatus
 import logging
 from pathlib import Path
@@ -26,13 +27,12 @@ from websockets.asyncio.server import ServerConnection
 from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
-from sdf_pose_bridge.cli.printing import CommandError
-from sdf_pose_bridge.cli.viewer import LIBRARIES
-from sdf_pose_bridge.cli.viewer.browser_script import page_with_script
+from sdf_pose_bridge.cli.viewer import LIBRARIES, UntestedViserError
 
 _ADDRESS = '127.0.0.1'
 _HOSTS = r'(127\.0\.0\.1|localhost)(:[0-9]+)?'
 _PAGE_OF_VISER = Path(viser.__file__).parent / 'client/build/index.html'
+_TITLE = '<title>Viser</title>'
 
 
 class Events:
@@ -59,6 +59,20 @@ class Events:
         return [self._asked.get_nowait() for _ in range(self._asked.qsize())]
 
 
+def page_with_script(page: str, title: str, data: str = '') -> str:
+    """
+    Add features that viser does not have to a page of it: page.css and page.js.
+
+    :param data: elements with data for the script.
+    """
+    style, script = (
+        Path(__file__).with_name(name).read_text(encoding='utf-8')
+        for name in ('page.css', 'page.js'))
+    return page.replace(
+        _TITLE, f'<title>{html.escape(title)}</title>{data}<style>{style}</style>'
+        f'<script>{script}</script>', 1)
+
+
 def server_for_its_owner(
     port: int, title: str, data: str = '',
 ) -> tuple[viser.ViserServer, str]:
@@ -69,7 +83,7 @@ def server_for_its_owner(
     :param data: elements of its page with data for the script.
     :return: the server, and the address of its page: with a secret in its path, without which
         requests are rejected.
-    :raises CommandError: if this cannot be done with the installed viser.
+    :raises UntestedViserError: if this cannot be done with the installed viser.
     """
     rich.get_console().quiet = True
     # Otherwise connections that a browser opens in advance and closes are logged as errors.
@@ -103,7 +117,7 @@ def server_for_its_owner(
     if not guarded:
         msg = (f'viser {viser.__version__} does not work as the releases that this is tested with '
                f'({LIBRARIES[0]})')
-        raise CommandError(msg)
+        raise UntestedViserError(msg)
     server.gui.set_panel_label(title)
     server.gui.configure_theme(show_logo=False, show_share_button=False)
     # The environment map of viser makes every color pale.

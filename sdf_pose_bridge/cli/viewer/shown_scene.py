@@ -12,16 +12,10 @@ from itertools import accumulate, chain
 import math
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-from sdf_pose_bridge.cli.printing import kind_labels_of
-from sdf_pose_bridge.geometry.chains import ends_from_pointers
-from sdf_pose_bridge.geometry.poses import Pose, relative_pose
-from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.tf.joint_motion import DegreeOfFreedom, JointMotion
-from sdf_pose_bridge.tf.joint_positions import scene_at_positions
-from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT, tf_parents_from_scene
+from sdf_pose_bridge import Pose, Scene, scene_at_positions
+from sdf_pose_bridge.geometry.poses import relative_pose
+from sdf_pose_bridge.tf.joint_positions import leading_dofs
+from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import elements_in_model, tf_tree_from_scene, TfOptions
 
 _LARGEST_RANGE = 1000.0
@@ -41,13 +35,12 @@ class JointRange(NamedTuple):
     """Whether it is a whole turn, so that its ends are one position."""
 
 
-def range_of_dof(dof: DegreeOfFreedom) -> JointRange:
-    """Return the range of a degree of freedom."""
-    is_angle, axis = bool(dof.rad_per_unit), dof.axis
-    if axis.upper - axis.lower >= _LARGEST_RANGE:
+def range_within_limits(lower: float, upper: float, *, is_angle: bool) -> JointRange:
+    """Return the range of a joint with these limits."""
+    if upper - lower >= _LARGEST_RANGE:
         most = math.pi if is_angle else 0.5
         return JointRange(is_angle, -most, most, is_turn=is_angle)
-    return JointRange(is_angle, axis.lower, max(axis.lower, axis.upper))
+    return JointRange(is_angle, lower, max(lower, upper))
 
 
 def short_names(names: Iterable[str]) -> list[str]:
@@ -70,13 +63,13 @@ class ShownScene:
 
     def __init__(self, loaded: Scene, options: TfOptions) -> None:
         self.loaded, self._options = loaded, options
-        dofs = sorted(JointMotion(loaded, tf_parents_from_scene(loaded)).dofs,
-                      key=lambda dof: dof.joint.element)
+        dofs = leading_dofs(loaded)
         self.is_in_model = elements_in_model(loaded, options.model) & (loaded.roots == 0)
         """Shape (n,): whether each element is to be shown."""
         self.joints: dict[str, JointRange] = {
-            dof.name: range_of_dof(dof) for dof in dofs
-            if self.is_in_model[dof.joint.element] and dof.axis.mimic is None}
+            dof.name: range_within_limits(
+                dof.axis.lower, dof.axis.upper, is_angle=bool(dof.rad_per_unit))
+            for dof in dofs if self.is_in_model[dof.joint.element]}
         """The range of each degree of freedom that does not follow another one, in file order."""
         self.positions: Mapping[str, float] = {
             name: min(max(0.0, limits.lower), limits.upper)
@@ -90,17 +83,11 @@ class ShownScene:
         """The ids of all frames, and of the root frame, at the index ``ROOT_IS_PARENT``."""
         self.short_names: Sequence[str] = short_names(self.tree.frame_ids)
         """The ids of frames without the scopes that are not needed to tell them apart."""
-        self.labels: Sequence[str] = kind_labels_of(loaded, self.tree)
+        self.labels: Sequence[str] = self.tree.kind_labels(loaded)
         """The label of the kind of each frame."""
-        self.is_in_robot = self.is_in(
+        self.is_in_robot = loaded.are_in(
             [loaded.top_level_element(dof.joint.element) for dof in dofs])
         """Shape (n,): whether each element is in a model that moves."""
-
-    def is_in(self, elements: Sequence[int]) -> NDArray[np.bool_]:
-        """Return whether each element is one of some elements, or in one, shape (n,)."""
-        parents = self.loaded.parents
-        is_end = np.isin(np.arange(len(parents)), elements)
-        return np.take(is_end, ends_from_pointers(np.where(is_end, -1, parents)))
 
     def at(self, positions: Mapping[str, float], scene: Scene | None = None) -> ShownScene:
         """Return the scene at positions of its joints; ``scene`` replaces the loaded one."""

@@ -11,11 +11,10 @@ from typing import NamedTuple
 import numpy as np
 import trimesh
 
+from sdf_pose_bridge import Kind, Scene
 from sdf_pose_bridge.cli.viewer.meshes import MeshPart, MeshReader
 from sdf_pose_bridge.geometry.rotations import Floats, matrix_from_quaternion
 from sdf_pose_bridge.names import printable, quoted_names
-from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.shapes import Shape
 
 MOST_SURFACES = 5_000

@@ -18,7 +18,13 @@ from lxml import etree
 
 from sdf_pose_bridge.errors import AttributeInvalidError, MergeIncludeError
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.names import MODEL_FRAME, ROOT_FRAME, WORLD_FRAME
+from sdf_pose_bridge.names import (
+    MODEL_FRAME,
+    PROXY_END,
+    PROXY_START,
+    ROOT_FRAME,
+    WORLD_FRAME,
+)
 from sdf_pose_bridge.sdformat.grammar import (
     Definition,
     definition_of,
@@ -38,7 +44,6 @@ from sdf_pose_bridge.sdformat.xml_tree import (
     XmlElement,
 )
 
-_PROXY_START, _PROXY_END = '_merged__', '__model__'
 _POSES_OF_PARTS = '*[not(self::inertial)]/pose'
 
 
@@ -121,7 +126,7 @@ def _proxy_frame(
     if known is None:
         return None
     proxy_pose.text = text_from_pose(known.pose)
-    name = f'{_PROXY_START}{attribute_of(model, "name")}{_PROXY_END}'
+    name = f'{PROXY_START}{attribute_of(model, "name")}{PROXY_END}'
     canonical_link = attribute_of(model, 'canonical_link') or known.canonical_link
     proxy = etree.Element('frame', {'name': name, 'attached_to': canonical_link})
     placement = attribute_of(model, 'placement_frame')
@@ -132,11 +137,6 @@ def _proxy_frame(
         is_named_by_include=first_child(include, 'name') is not None,
         placement_frame=name if placement == MODEL_FRAME else placement)
     return proxy
-
-
-def is_name_of_proxy(name: str) -> bool:
-    """Return whether a merge may have made a name."""
-    return name.startswith(_PROXY_START) and name.endswith(_PROXY_END)
 
 
 def _replace_model_frame(

@@ -10,10 +10,10 @@ import pytest
 pytest.importorskip('trimesh', reason='needs trimesh')
 pytest.importorskip('viser', reason='needs viser')
 
-from sdf_pose_bridge.cli.printing import METRES
 from sdf_pose_bridge.cli.viewer.drawing import Drawing, VisiblePart
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.units import METRES
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfOptions

@@ -9,7 +9,6 @@ import shlex
 
 import pytest
 
-from sdf_pose_bridge.cli.printing import Units
 from sdf_pose_bridge.cli.viewer.frame_texts import (
     html_of_difference,
     html_of_frame,
@@ -21,6 +20,7 @@ from sdf_pose_bridge.cli.viewer.frame_texts import (
 )
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.units import Units
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions

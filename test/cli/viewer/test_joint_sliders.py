@@ -9,34 +9,22 @@ import pytest
 
 pytest.importorskip('viser', reason='needs viser')
 
-from sdf_pose_bridge.cli.printing import DEGREES, Units
 from sdf_pose_bridge.cli.viewer import joint_sliders
 from sdf_pose_bridge.cli.viewer.joint_sliders import JointSliders
 from sdf_pose_bridge.cli.viewer.server import Events
-from sdf_pose_bridge.cli.viewer.shown_scene import JointRange, range_of_dof
-from sdf_pose_bridge.scene.loading import load_text
-from sdf_pose_bridge.tf.joint_motion import JointMotion
-from sdf_pose_bridge.tf.parents import tf_parents_from_scene
+from sdf_pose_bridge.cli.viewer.shown_scene import JointRange, range_within_limits
+from sdf_pose_bridge.geometry.units import DEGREES, Units
 
 
-def joint_range(kind, limit=''):
-    text = f"""<sdf version="1.11"><model name="m"><link name="a"/><link name="b"/>
-      <joint name="j" type="{kind}"><parent>a</parent><child>b</child>
-        <axis><xyz>0 0 1</xyz>{limit}</axis></joint></model></sdf>"""
-    scene = load_text(text.encode(), 'm.sdf')
-    (dof,) = JointMotion(scene, tf_parents_from_scene(scene)).dofs
-    return range_of_dof(dof)
-
-
-@pytest.mark.parametrize(('kind', 'most'), [('revolute', math.pi), ('prismatic', 0.5)])
-@pytest.mark.parametrize('limit', ['', '<limit><lower>-1</lower></limit>'])
-def test_joint_without_both_limits(kind, most, limit):
-    assert joint_range(kind, limit)[1:] == (-most, most, kind == 'revolute')
+@pytest.mark.parametrize(('is_angle', 'most'), [(True, math.pi), (False, 0.5)])
+@pytest.mark.parametrize('lower', [-math.inf, -1.0])
+def test_joint_without_both_limits(is_angle, most, lower):
+    assert range_within_limits(lower, math.inf, is_angle=is_angle) == (
+        is_angle, -most, most, is_angle)
 
 
 def test_joint_with_limits():
-    assert joint_range(
-        'revolute', '<limit><lower>-1</lower><upper>3</upper></limit>')[1:] == (-1, 3, False)
+    assert range_within_limits(-1.0, 3.0, is_angle=True) == (True, -1.0, 3.0, False)
 
 
 @pytest.fixture
@@ -77,7 +65,7 @@ def test_each_joint_moves_through_its_range_once(gui, monkeypatch):
 @pytest.mark.parametrize('end', [math.pi, -math.pi])
 def test_wheel_goes_round(gui, end):
     joints = JointSliders(
-        gui, {'m/j': joint_range('revolute')}, {}, Units(), Events(Event()))
+        gui, {'m/j': JointRange(True, -math.pi, math.pi, True)}, {}, Units(), Events(Event()))
     (slider,) = joints._sliders.values()
     slider.value = end
     joint_sliders._turn_on(slider)

@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which requests the server of the page answers; integration/test_view_page.py asks it."""
 
+import html
+import re
+
 import pytest
 
 pytest.importorskip('viser', reason='needs viser')
@@ -9,10 +12,26 @@ from websockets.asyncio import server as websockets_server
 from websockets.datastructures import Headers
 from websockets.http11 import Request
 
-from sdf_pose_bridge.cli.printing import CommandError
-from sdf_pose_bridge.cli.viewer.server import reason_to_refuse, server_for_its_owner
+from sdf_pose_bridge.cli.viewer import UntestedViserError
+from sdf_pose_bridge.cli.viewer.frame_texts import html_of_data
+from sdf_pose_bridge.cli.viewer.server import (
+    page_with_script,
+    reason_to_refuse,
+    server_for_its_owner,
+)
 
 HERE = 'http://127.0.0.1:8080'
+HOSTILE = '"><script>'
+
+
+def test_title_and_data_are_escaped_and_the_rest_stays():
+    page = page_with_script(
+        '<head><title>Viser</title></head><body>', HOSTILE, html_of_data('names', HOSTILE))
+    (value,) = re.match(
+        '<head><title>&quot;&gt;&lt;script&gt;</title><meta data-names="([^"<>]*)"><style>',
+        page).groups()
+    assert html.unescape(value) == HOSTILE
+    assert page.endswith('</script></head><body>')
 
 
 @pytest.mark.parametrize('path', ['/secret', '/secret/', '/secret/?a=/b', '/secret/index.html'])
@@ -50,7 +69,7 @@ def request(path, origin, host):
 
 def test_a_server_that_is_started_in_another_way_is_an_error(monkeypatch):
     monkeypatch.setattr('viser.ViserServer', lambda *_, **__: None)
-    with pytest.raises(CommandError, match='does not work as the releases'):
+    with pytest.raises(UntestedViserError, match='does not work as the releases'):
         server_for_its_owner(0, 'a.sdf')
 
 

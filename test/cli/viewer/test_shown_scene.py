@@ -35,16 +35,6 @@ def test_only_the_model_that_is_asked_for():
     assert np.array(scene.loaded.names)[scene.is_in_model].tolist() == ['table', 'table::l']
 
 
-def test_joints_are_in_file_order():
-    joints = ''.join(
-        f'<link name="{child}"/><joint name="{joint}" type="revolute"><parent>{parent}</parent>'
-        f'<child>{child}</child><axis><xyz>0 0 1</xyz></axis></joint>'
-        for joint, parent, child in (('j1', 'base', 'a'), ('j2', 'a', 'a2'), ('j3', 'base', 'b')))
-    text = f'<sdf version="1.11"><model name="m"><link name="base"/>{joints}</model></sdf>'
-    scene = ShownScene(load_text(text.encode(), 'm.sdf'), TfOptions())
-    assert [*scene.joints] == ['j1', 'j2', 'j3']
-
-
 @pytest.mark.parametrize(('names', 'expected'), [
     (['a/link', 'b/link', 'b/top'], ['a/link', 'b/link', 'top']),
     (['table', 'x/table', 'x/y/table'], ['table', 'x/table', 'y/table']),
@@ -59,15 +49,6 @@ def test_what_is_in_a_robot():
     scene = shown()
     assert np.array(scene.loaded.names)[scene.is_in_robot].tolist() == [
         'arm', 'arm::a', 'arm::b', 'arm::j']
-
-
-@pytest.mark.parametrize(('elements', 'names'), [
-    (['table'], ['table', 'table::l']), (['table::l', 'table'], ['table', 'table::l']),
-    (['arm::a'], ['arm::a']), ([], [])])
-def test_what_is_in_elements(elements, names):
-    scene = shown()
-    found = scene.is_in([*map(scene.loaded.names.index, elements), -1])
-    assert np.array(scene.loaded.names)[found].tolist() == names
 
 
 def test_frames_at_positions():

@@ -1,43 +1,11 @@
-# Copyright 2026 The sdf_pose_bridge authors
-# SPDX-License-Identifier: Apache-2.0
-"""
-Features of the page that viser does not have.
-
-These are frames and lines on top of bodies, labels without overlaps, names at the pointer, a strip
-over the scene, the opacity of bodies, copying, and changes of several controls at once. The scene
-is found as the developer tools of three.js find it.
-"""
-
-from __future__ import annotations
-
-import html
-
-_TITLE = '<title>Viser</title>'
-_STYLE = """<style>
-  /* A control is below its label if the label is long. */
-  .mantine-Flex-root:has(> div > p > label) {flex-wrap: wrap}
-  .mantine-Flex-root > div:has(> p > label) {width: auto !important; min-width: 5.5em}
-  .mantine-Flex-root > div:has(> p > label) + div {flex: 1 1 8em}
-  .mantine-Flex-root > div:has(> p > label) + div:has(.mantine-Slider-root) {flex-basis: 10em}
-  /* The limits are centered at the ends. */
-  .mantine-Slider-root {margin-left: 1em}
-  .mantine-Flex-root > .mantine-NumberInput-root {width: 4.2rem !important}
-  /* A section is folded while its content, which is not its last element, is hidden. */
-  .mantine-Paper-root:has(> [aria-hidden=true]:not(:last-child)) {border-width: 1px 0 0}
-  .mantine-Paper-root > [aria-hidden=true] + :last-child > div {padding: 4px !important}
-  [data-floating-window]:has(.asked), .mantine-Tabs-root:has(.asked) {display: none}
-  .over-scene {position: absolute; inset: 0; overflow: hidden; pointer-events: none}
-  .axis-cross {position: absolute; right: 8px; top: 8px; width: 60px; stroke-width: 3}
-  .labels div {position: absolute; padding: 0 2px; font: 12px/14px sans-serif; white-space: pre;
-    background: #fffc; color: #212529}
-  .strip {position: fixed; left: 8px; bottom: 8px; z-index: 11; padding: 4px 10px; font: 13px
-    sans-serif; background: #fffe; color: #212529; border: 1px solid #adb5bd; border-radius: 4px}
-  .strip:empty {display: none}
-  .strip label {display: inline-block; padding: 3px 10px; margin: 4px 6px 2px 0; cursor: pointer;
-    border: 1px solid #868e96; border-radius: 4px; font-weight: normal}
-  .strip label[data-ask^=write] {background: #228be6; border-color: #228be6; color: #fff}
-</style>"""
-_SCRIPT = """<script>(() => {
+// Copyright 2026 The sdf_pose_bridge authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Features of the page that viser does not have: frames and lines on top of bodies, labels without
+// overlaps, names at the pointer, a strip over the scene, the opacity of bodies, copying, and
+// changes of several controls at once. The scene is found as the developer tools of three.js find
+// it.
+(() => {
   // viser sends a change at most every 50 ms, and of several in between only the last one: when
   // two controls change, one is lost. A microtask runs before the next event.
   const wait = window.setTimeout;
@@ -88,7 +56,7 @@ _SCRIPT = """<script>(() => {
     labels.dataset.drawn = drawn;
     labels.replaceChildren(...placed.map(({lines, x, y}) => {
       const label = document.createElement('div');
-      label.textContent = lines.join('\\n');
+      label.textContent = lines.join('\n');
       label.style.transform = `translate(${x}px, ${y}px)`;
       return label;
     }));
@@ -143,8 +111,8 @@ _SCRIPT = """<script>(() => {
       if (depth > 0 && distance < 12) found.push([distance, namesInScene().frames[k]]);
     }
     found.sort(([a], [b]) => a - b);
-    return found.slice(0, 8).map(([, name]) => name).join('\\n')
-      + (found.length > 8 ? `\\nand ${found.length - 8} more` : '');
+    return found.slice(0, 8).map(([, name]) => name).join('\n')
+      + (found.length > 8 ? `\nand ${found.length - 8} more` : '');
   };
   const nameOfBodyAt = (event, box) => {
     const meshes = [], {bodies} = namesInScene(), {raycaster} = scene.__r3f.root.getState();
@@ -237,10 +205,4 @@ _SCRIPT = """<script>(() => {
     });
     if (ask) tell(ask);
   });
-})();</script>"""
-
-
-def page_with_script(page: str, title: str, data: str = '') -> str:
-    """Add the style, the script and elements with data for it to a page of viser."""
-    added = f'<title>{html.escape(title)}</title>{data}{_STYLE}{_SCRIPT}'
-    return page.replace(_TITLE, added, 1)
+})();
