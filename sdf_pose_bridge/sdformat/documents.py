@@ -73,7 +73,9 @@ def document_from_file(
     version = _declared_version(root, place)
     sources.versions[path] = version
     # A colon may be written as a character reference.
-    sources.may_hold_scoped_names |= b'&' in file.text or SEPARATOR.encode() in file.text
+    # Python finds one byte much faster than two.
+    sources.may_hold_scoped_names |= b'&' in file.text or (
+        b':' in file.text and SEPARATOR.encode() in file.text)
     convert(root, version, sources)
     # libsdformat refuses it in a file's top model (checkXmlFromRoot). Blanks count here.
     for pose in root.xpath('model[1]/pose[1][@relative_to!=""]'):

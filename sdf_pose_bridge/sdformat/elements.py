@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sdf_pose_bridge.errors import ElementInvalidError, Place
+from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.geometry.formats import FAR_M
 from sdf_pose_bridge.geometry.poses import Pose
@@ -23,10 +23,8 @@ from sdf_pose_bridge.sdformat.inertials import AutomaticInertial, Inertial
 from sdf_pose_bridge.sdformat.joints import JointDetails
 from sdf_pose_bridge.sdformat.poses import (
     pose_doubts,
-    pose_numbers_from_text,
     PoseFormat,
     poses_from_numbers,
-    PoseTextError,
 )
 from sdf_pose_bridge.sdformat.shapes import Shape
 from sdf_pose_bridge.sdformat.xml_tree import path_step
@@ -182,16 +180,15 @@ class ElementsBuilder:
         self.parents = array('i')
         self.file_indices = array('i')
         self.lines = array('i')
-        self.pose_lines = array('i')
+        self.pose_lines: dict[int, int] = {}
+        """The lines of poses, by the indices of their elements."""
         self.details: defaultdict[str, dict[int, Any]] = defaultdict(dict)
         """Details of elements, by the fields of :class:`Elements`."""
-        self.has_pose = bytearray()
-        """For each element whether it has a pose, even one without a line."""
         self._scopes = array('i')
         self._paths = paths
-        self._poses: defaultdict[PoseFormat, tuple[array[int], list[str]]] = defaultdict(
-            lambda: (array('i'), []))
-        """Indices and texts of the poses in each format."""
+        self._poses: defaultdict[PoseFormat, tuple[array[int], list[str], list[float]]] = (
+            defaultdict(lambda: (array('i'), [], [])))
+        """Indices, texts and numbers of the poses in each format."""
 
     def add(
         self, kind: Kind, name: str, parent: int, scope: int, file_index: int, line: int,
@@ -204,50 +201,40 @@ class ElementsBuilder:
         self._scopes.append(scope)
         self.file_indices.append(file_index)
         self.lines.append(line)
-        self.pose_lines.append(0)
-        self.has_pose.append(False)
         return index
 
-    def set_pose(self, index: int, text: str, pose_format: PoseFormat, line: int) -> None:
+    def set_pose(
+        self, index: int, text: str, numbers: Sequence[float], pose_format: PoseFormat, line: int,
+    ) -> None:
         """
         Set the pose of an element.
 
         :param text: the pose as written.
-        :param pose_format: its format.
+        :param numbers: those of the text.
         :param line: its line; 0 for a pose that is in no file.
         """
         self.pose_lines[index] = line
-        self.has_pose[index] = True
-        indices, texts = self._poses[pose_format]
+        indices, texts, numbers_of_all = self._poses[pose_format]
         indices.append(index)
         texts.append(text)
+        numbers_of_all += numbers
 
     def elements(self, problems: Problems) -> Elements:
         """
         Return the table.
 
-        :param problems: takes errors about invalid poses, which become the identity, and warnings
-            about poses that may be mistakes.
+        :param problems: takes warnings about poses that may be mistakes.
         """
+        pose_lines = np.zeros(len(self.names), dtype=np.int32)
+        pose_lines[list(self.pose_lines)] = list(self.pose_lines.values())
         table = Elements(
             kinds=np.array(self.kinds), names=self.names,
             parents=np.array(self.parents), scopes=np.array(self._scopes),
             file_indices=np.array(self.file_indices), lines=np.array(self.lines),
-            pose_lines=np.array(self.pose_lines), poses=np.tile(Pose(), (len(self.names), 1)),
+            pose_lines=pose_lines, poses=np.tile(Pose(), (len(self.names), 1)),
             paths=self._paths, has_shapes=self._has_shapes, **self.details)
-        for pose_format, (indices, texts) in self._poses.items():
-            rows = []
-            for row, text in enumerate(texts):
-                try:
-                    pose, doubt = pose_numbers_from_text(text, pose_format)
-                except PoseTextError as error:
-                    place = table.place_of_pose(indices[row])
-                    problems.error(ElementInvalidError(str(error), place))
-                    pose, doubt = pose_numbers_from_text('', pose_format)
-                rows.append(pose)
-                if doubt:
-                    problems.warning(doubt, table.place_of_pose(indices[row]))
-            numbers = np.array(rows)
+        for pose_format, (indices, texts, numbers_of_all) in self._poses.items():
+            numbers = np.array(numbers_of_all).reshape(len(texts), -1)
             table.poses[indices] = poses_from_numbers(numbers, pose_format)
             for row, doubt in pose_doubts(texts, numbers, pose_format):
                 problems.warning(doubt, table.place_of_pose(indices[row]))

@@ -282,14 +282,18 @@ class Definition:
             identifier, has_frames=self.has_frames and identifier not in _UNREAD)
 
 
-@cache
 def definition_of(identifier: str, *, has_frames: bool = False) -> Definition:
     """
-    Return the definition of an element.
+    Return the definition of an element, always the same object.
 
     :param identifier: label of a kind, or a key of :data:`ELEMENTS`.
     :param has_frames: as for :class:`Definition`.
     """
+    return _definition(identifier, has_frames=has_frames)
+
+
+@cache
+def _definition(identifier: str, *, has_frames: bool) -> Definition:
     return Definition(identifier, _CONTENTS[identifier], has_frames=has_frames)
 
 

@@ -51,6 +51,10 @@ class PoseFormat(NamedTuple):
     """Whether roll, pitch and yaw are in degrees."""
 
 
+EULER_RPY = PoseFormat()
+"""The default."""
+
+
 class PoseTextError(ValueError):
     """The text is not a pose; the message has the value and the rule."""
 
@@ -62,7 +66,7 @@ def pose_format_of(xml: XmlElement) -> PoseFormat:
     :raises PoseTextError: if ``rotation_format`` or ``degrees`` is not valid.
     """
     if not xml.keys():
-        return PoseFormat()
+        return EULER_RPY
     rotation_format = attribute_of(xml, 'rotation_format')
     pose_format = PoseFormat(
         rotation_format == 'quat_xyzw', boolean_from_text(xml.get('degrees', '')) is True)

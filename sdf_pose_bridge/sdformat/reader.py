@@ -9,7 +9,7 @@ a value is checked, and an unknown element is skipped.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from itertools import takewhile
 from typing import Any, NamedTuple
@@ -38,9 +38,9 @@ from sdf_pose_bridge.sdformat.grammar import Definition, definition_of, Kind
 from sdf_pose_bridge.sdformat.inertials import inertial_from_element
 from sdf_pose_bridge.sdformat.joints import check_children_of_joint, joint_details_from_element
 from sdf_pose_bridge.sdformat.poses import (
+    EULER_RPY,
     pose_format_of,
     pose_numbers_from_text,
-    PoseFormat,
     PoseTextError,
 )
 from sdf_pose_bridge.sdformat.shapes import check_material, check_submesh, shape_of
@@ -73,13 +73,12 @@ from sdf_pose_bridge.sdformat.xml_tree import (
 _FRAME_ID_TAGS = ('frame_id', 'gz_frame_id', 'ignition_frame_id')
 """Elements of a sensor with the frame id of its messages; the first of them counts."""
 _SCOPES = (Kind.WORLD, Kind.MODEL)
-_CHECKS: Mapping[str, tuple[bool, Callable[[XmlElement, Sources], None]]] = {
-    'material': (True, check_material),
-    'submesh': (True, check_submesh),
-    'joint': (False, partial(check_children_of_joint, tags=('parent', 'child'))),
-    'old_joint_state': (False, partial(check_children_of_joint, tags=('angle',)))}
-"""Functions that check elements without a frame, by the identifiers of these, and whether they do
-so where libsdformat loads frames, or where it does not, as in a state."""
+_CHECKS: Mapping[Definition, Callable[[XmlElement, Sources], None]] = {
+    definition_of('material', has_frames=True): check_material,
+    definition_of('submesh', has_frames=True): check_submesh,
+    definition_of('joint'): partial(check_children_of_joint, tags=('parent', 'child')),
+    definition_of('old_joint_state'): partial(check_children_of_joint, tags=('angle',))}
+"""Functions that check elements without a frame."""
 
 
 def elements_from_tree(root: XmlElement, sources: Sources, *, shapes: bool = False) -> Elements:
@@ -151,6 +150,7 @@ class _Reader:
 
     def __init__(self, sources: Sources, path: str = '', *, shapes: bool = False) -> None:
         self._sources = sources
+        self._most_depth = sources.usage.limits.depth
         self._table = ElementsBuilder(sources.paths, has_shapes=shapes)
         self._parts_of_actors = ElementsBuilder(sources.paths)
         """Links and joints of actors with their content, which are checked, but have no frames."""
@@ -182,7 +182,7 @@ class _Reader:
             elif child_definition.kind is Kind.WORLD:
                 self.read(child, child_definition, self.top)
             elif first:
-                self._check_attributes(child, child_definition)
+                self._check_attributes(child, child.keys(), child_definition)
                 error: type[SdfError] = DuplicateNameError
                 msg = f'{first} stands at the top of this file already'
                 if described(child) != first:
@@ -212,46 +212,47 @@ class _Reader:
 
         :param parent: index of its parent element; -1 if this has no frame.
         """
-        if definition.has_required_attributes or xml.keys():
-            self._check_attributes(xml, definition, is_checked=scope.is_checked)
-        if definition.is_pose:
-            self._read_pose(xml, definition, scope, parent)
-        elif definition.value is not None:
-            fault, doubt = judged_value(text_of(xml), definition.value)
-            if fault:
-                self._sources.error(ElementInvalidError, xml, f'{_described_value(xml)} {fault}')
-            elif doubt:
-                self._sources.warning(xml, f'{_described_value(xml)} {doubt}')
+        attributes = xml.keys()
+        if attributes or definition.has_required_attributes:
+            self._check_attributes(xml, attributes, definition, is_checked=scope.is_checked)
+        value = definition.value
+        if value is not None:
+            if definition.is_pose:
+                self._read_pose(xml, definition, scope, parent)
+            else:
+                fault, doubt = judged_value(text_of(xml), value)
+                if fault:
+                    self._sources.error(
+                        ElementInvalidError, xml, f'{_described_value(xml)} {fault}')
+                elif doubt:
+                    self._sources.warning(xml, f'{_described_value(xml)} {doubt}')
+            for child in xml:
+                self._undefined.report_element(child, definition)
+            return
+        element = NO_ELEMENT
+        if definition.kind is not None:
+            element, scope = self._added(xml, definition, definition.kind, scope, parent)
+            if element == NO_ELEMENT:
+                definition = definition_of(definition.identifier)
+        elif definition in _CHECKS:
+            _CHECKS[definition](xml, self._sources)
         elif definition.identifier == 'include' and parent != NO_ELEMENT:
             missing_includes = scope.table.details['missing_includes']
             missing_includes.setdefault(parent, {}).update(self._sources.origin(xml).missing)
-        else:
-            kind, element = definition.kind, NO_ELEMENT
-            if kind is None:
-                if definition.identifier in _CHECKS:
-                    has_frames, check = _CHECKS[definition.identifier]
-                    if definition.has_frames is has_frames:
-                        check(xml, self._sources)
-            else:
-                element, scope = self._added(xml, kind, scope, parent)
-                if element == NO_ELEMENT:
-                    definition = definition_of(definition.identifier)
-            if depth > self._sources.usage.limits.depth:
-                self._sources.check_depth(depth, xml)
-            definitions = definition.children
-            for child in xml:
-                child_definition = definitions.get(child.tag)
-                if child_definition is None:
-                    if not (definition.takes_any_children or scope.is_checked):
-                        self._undefined.report_element(child, definition)
-                elif not scope.is_checked or child_definition.concerns_frames:
-                    self.read(child, child_definition, scope, element, depth + 1)
-                    if child_definition.value is not None and len(child):
-                        for grandchild in child:
-                            self._undefined.report_element(grandchild, child_definition)
+            return
+        if depth > self._most_depth:
+            self._sources.check_depth(depth, xml)
+        definitions, is_checked = definition.children, scope.is_checked
+        for child in xml:
+            child_definition = definitions.get(child.tag)
+            if child_definition is None:
+                if not (definition.takes_any_children or is_checked):
+                    self._undefined.report_element(child, definition)
+            elif not is_checked or child_definition.concerns_frames:
+                self.read(child, child_definition, scope, element, depth + 1)
 
     def _added(
-        self, xml: XmlElement, kind: Kind, scope: _Scope, parent: int,
+        self, xml: XmlElement, definition: Definition, kind: Kind, scope: _Scope, parent: int,
     ) -> tuple[int, _Scope]:
         """
         Add an element to the table, unless its name has an error.
@@ -266,7 +267,7 @@ class _Reader:
                 is_checked=scope.is_checked)
             parent = NO_ELEMENT
         table, names, path, scope_element, is_checked = scope
-        name = names.add(kind, xml, parent, path) if kind.has_name else kind.label
+        name = names.add(kind, xml, parent, path) if definition.has_name else definition.identifier
         if name is None:
             return NO_ELEMENT, scope
         origin = self._sources.origin(xml)
@@ -292,9 +293,12 @@ class _Reader:
     # Attributes and poses
 
     def _check_attributes(
-        self, xml: XmlElement, definition: Definition, *, is_checked: bool = False,
+        self, xml: XmlElement, names: Iterable[str], definition: Definition, *,
+        is_checked: bool = False,
     ) -> None:
-        self._undefined.report_attributes(xml, definition)
+        for name in names:
+            if name not in definition.attributes:
+                self._undefined.report_attribute(name, xml, definition)
         for rule in definition.checked_attributes:
             name, text = rule.name, xml.get(rule.name)
             choice = rule.choice if definition.has_frames else None
@@ -325,30 +329,26 @@ class _Reader:
         self, xml: XmlElement, definition: Definition, scope: _Scope, parent: int,
     ) -> None:
         """Keep the pose of an element, or check another pose."""
+        text, pose_format = text_of(xml), EULER_RPY
+        try:
+            pose_format = pose_format_of(xml)
+            numbers, doubt = pose_numbers_from_text(text, pose_format)
+        except PoseTextError as error:
+            self._sources.error(ElementInvalidError, xml, str(error))
+            numbers, doubt = pose_numbers_from_text('', pose_format)
+        if doubt:
+            self._sources.warning(xml, doubt)
         table = scope.table
-        is_first = parent != NO_ELEMENT and not table.has_pose[parent]
-        if is_first and xml.keys():
-            self._read_relative_to(xml, definition, table, parent)
-        try:
-            text, pose_format = text_of(xml), pose_format_of(xml)
-        except PoseTextError as error:
-            self._sources.error(ElementInvalidError, xml, str(error))
-            text, pose_format = '', PoseFormat()
-        if is_first:
-            table.set_pose(parent, text, pose_format, self._sources.line(xml))
-            return
-        if definition.is_required and not text_of(xml):
-            msg = f'<{written_tag(xml)}> is empty; it must have a value'
-            self._sources.error(ElementInvalidError, xml, msg)
-        try:
-            _, doubt = pose_numbers_from_text(text, pose_format)
-        except PoseTextError as error:
-            self._sources.error(ElementInvalidError, xml, str(error))
-        else:
-            if doubt:
-                self._sources.warning(xml, doubt)
-        if parent != NO_ELEMENT:
+        if parent == NO_ELEMENT:
+            if definition.is_required and not text:
+                msg = f'<{written_tag(xml)}> is empty; it must have a value'
+                self._sources.error(ElementInvalidError, xml, msg)
+        elif parent in table.pose_lines:
             self._sources.warning(xml, 'a second <pose> is ignored; the first one counts')
+        else:
+            if xml.keys():
+                self._read_relative_to(xml, definition, table, parent)
+            table.set_pose(parent, text, numbers, pose_format, self._sources.line(xml))
 
     def _read_relative_to(
         self, xml: XmlElement, definition: Definition, table: ElementsBuilder, index: int,

@@ -48,8 +48,6 @@ class Origin(NamedTuple):
 
     file: str | None = None
     """Its file; None for the file of its parent."""
-    line: int = 0
-    """Its line; 0 for the line that it was parsed in."""
     include: Place | None = None
     """The include of an included element; None for its content."""
     is_named_by_include: bool = False
@@ -100,7 +98,8 @@ class Sources:
         """The outermost elements of trees whose elements have sources of their own."""
         self.problems = Problems(self.paths, self.includes)
         self._origins: dict[XmlElement, Origin] = {}
-        self._parsed_lines: dict[XmlElement, int] = {}
+        self._lines: dict[XmlElement, int] = {}
+        """The lines of elements for which lxml has another line or none."""
         self._places: dict[XmlElement | None, Place] | None = None
 
     def with_own_problems(self) -> Sources:
@@ -147,19 +146,20 @@ class Sources:
     def add_tree(self, path: str, root: XmlElement, lines: Mapping[XmlElement, int]) -> None:
         """Add the tree of a file, and the lines of elements that lxml does not know."""
         self.set_origin(root, file=path)
-        self._parsed_lines.update(lines)
+        self._lines.update(lines)
         if lines:
             self.composed_trees.add(root)
 
     def set_source(self, xml: XmlElement, source: XmlElement) -> None:
         """Give an element, with the content that has no other source, the place of another one."""
-        self.set_origin(xml, file=self.path(source), line=self.line(source))
+        self.set_origin(xml, file=self.path(source))
+        self._lines[xml] = self.line(source)
 
     def set_parsed_line(self, xml: XmlElement, source: XmlElement) -> None:
         """Give an element of a new tree the line of an element of the old one."""
         xml.sourceline = source.sourceline  # type: ignore[misc]  # it can be set
-        if source in self._parsed_lines:
-            self._parsed_lines[xml] = self._parsed_lines[source]
+        if source in self._lines:
+            self._lines[xml] = self._lines[source]
 
     def set_origin(self, xml: XmlElement, **changes: Any) -> None:
         """Set fields of the origin of an element."""
@@ -176,10 +176,10 @@ class Sources:
 
     def line(self, xml: XmlElement) -> int:
         """Return the line in which an element begins, from 1; 0 if it is not known."""
-        origin = self._origins.get(xml, _PARSED)
-        if origin.pose is not None:
-            return origin.pose.line
-        return origin.line or self._parsed_lines.get(xml) or xml.sourceline or 0
+        pose = self._origins.get(xml, _PARSED).pose
+        if pose is not None:
+            return pose.line
+        return self._lines.get(xml) or xml.sourceline or 0
 
     def place(self, xml: XmlElement) -> Place:
         """Return the file and the line of an element, and its path in the tree."""
@@ -203,8 +203,8 @@ class Sources:
             for old, new in zip(xml.iter(), result.iter(), strict=True):
                 if old in self._origins:
                     self._origins[new] = self._origins[old]
-                if old in self._parsed_lines:
-                    self._parsed_lines[new] = self._parsed_lines[old]
+                if old in self._lines:
+                    self._lines[new] = self._lines[old]
         self.set_origin(result, file=self.path(xml))
         return result
 

@@ -10,6 +10,7 @@ libsdformat warns of the same ones in SDFormat (``readXml`` and ``readAttributes
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from itertools import filterfalse
 
 from sdf_pose_bridge.names import NameIndex
 from sdf_pose_bridge.sdformat.grammar import Definition, definition_of
@@ -76,22 +77,20 @@ class UndefinedReporter:
             tag, parent.identifier, map(str, parent.children), '<{}>')
         self._warn(xml, f'<{tag}> in {place}', hint)
 
-    def report_attributes(self, xml: XmlElement, definition: Definition) -> None:
-        """Warn of the undefined attributes of an element."""
-        names = xml.keys()
-        for name in names:
-            # lxml writes the namespace of a prefix in braces.
-            if (name in definition.attributes or ':' in name or '{' in name
-                    or self._is_only_counted()):
-                continue
-            likely = f'it is an element: <{name}>' if name in definition.children else ''
-            hint = self._hint(definition, f'@{name}') or likely or self._did_you_mean(
-                name, definition.identifier, definition.attributes, '{}') or _choice_of(definition)
-            self._warn(xml, f'{name}="{xml.get(name)}" of <{written_tag(xml)}>', hint)
+    def report_attribute(self, name: str, xml: XmlElement, definition: Definition) -> None:
+        """Warn of an undefined attribute of an element."""
+        # lxml writes the namespace of a prefix in braces.
+        if ':' in name or '{' in name or self._is_only_counted():
+            return
+        likely = f'it is an element: <{name}>' if name in definition.children else ''
+        hint = self._hint(definition, f'@{name}') or likely or self._did_you_mean(
+            name, definition.identifier, definition.attributes, '{}') or _choice_of(definition)
+        self._warn(xml, f'{name}="{xml.get(name)}" of <{written_tag(xml)}>', hint)
 
     def report_tree(self, xml: XmlElement, definition: Definition) -> None:
         """Warn of undefined names in an element and below it, except in extensions."""
-        self.report_attributes(xml, definition)
+        for name in filterfalse(definition.attributes.__contains__, xml.keys()):
+            self.report_attribute(name, xml, definition)
         for child in xml:
             child_definition = definition.children.get(child.tag)
             if child_definition is None:

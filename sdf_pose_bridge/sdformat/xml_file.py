@@ -13,7 +13,7 @@ from collections.abc import Mapping
 import contextlib
 import errno
 from glob import escape
-from itertools import chain
+from itertools import chain, islice
 import os
 from pathlib import Path
 import re
@@ -306,9 +306,11 @@ def _lines_and_warnings(
     begins = np.flatnonzero(characters == ord('<'))
     begins = begins[characters[begins + 1] != ord('/')]
     breaks = np.flatnonzero(characters == ord('\n'))
+    in_order = np.searchsorted(breaks, begins) + 1
+    first = 0 if has_break else int(np.searchsorted(in_order, _LAST_LINE))
     # Nothing after the outermost element belongs to the tree.
     lines = dict(zip(
-        root.iter(etree.Element), (np.searchsorted(breaks, begins) + 1).tolist(), strict=False))
+        islice(root.iter(etree.Element), first, None), in_order[first:].tolist(), strict=False))
     warnings = []
     tags = (tag[1] for tag in START_TAG.finditer(text) if tag[1]) if has_break else ()
     for (element, line), tag in zip(lines.items(), tags, strict=False):

@@ -131,9 +131,9 @@ def _proxy_frame(
     proxy = etree.Element('frame', {'name': name, 'attached_to': canonical_link})
     placement = attribute_of(model, 'placement_frame')
     proxy.append(proxy_pose)
-    place = sources.place(model)
+    sources.set_source(proxy, model)
     sources.set_origin(
-        proxy, file=place.file, line=place.line, include=sources.place(include),
+        proxy, pose=sources.origin(model).pose, include=sources.place(include),
         is_named_by_include=first_child(include, 'name') is not None,
         placement_frame=name if placement == MODEL_FRAME else placement)
     return proxy
