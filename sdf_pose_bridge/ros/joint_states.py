@@ -49,6 +49,9 @@ from sdf_pose_bridge.tf.lookup import PoseLookup
 INITIAL_PERIOD_S = 0.1
 """Period of ``/tf`` before the first message, if joints and models are known then."""
 
+PUBLISHERS_PERIOD_S = 3.0
+"""Period of the search for several publishers of a joint or a model."""
+
 GRACE_S = 2.0
 """Seconds until joints and models that no message has named are reported."""
 
@@ -101,7 +104,6 @@ class JointStates:
             node, lambda: StateSources(node, self._follow_sources, self._wake))
         self._wait_set = WaitSet(node.context)
         self._target = self._next_target = _Target(frames, lookup, (), settings)
-        # The thread makes them when it has processed the messages that came before.
         self._calls: deque[Callable[[], object]] = deque()
         self._has_to_end = False
         # The thread alone changes everything else. First, what is due at some monotonic time.
@@ -110,8 +112,6 @@ class JointStates:
         self._now_ns = 0
         self._is_simulated = self._has_jumped = False
         self._has_moved = self._has_reported_missing = False
-        # The names of the sources of each model, two at most.
-        self._sources_of_models: dict[str, list[str]] = {}
         self._start_frames()
         self._end_period()
         self._thread = threading.Thread(target=self._run, name='joint states', daemon=True)
@@ -137,21 +137,18 @@ class JointStates:
 
     def publish_topics(self) -> None:
         """Publish all moving frames on ``~/transforms`` and ``~/poses/...`` soon."""
-        self._calls.append(lambda: self._due.update({self._publish_at_rest: 0.0}))
-        self._wake()
+        self._call(lambda: self._due.update({self._publish_at_rest: 0.0}))
 
     def wait(self) -> None:
         """Wait until all messages so far are processed."""
         has_come = threading.Event()
-        self._calls.append(has_come.set)
-        self._wake()
+        self._call(has_come.set)
         has_come.wait()
 
     def current_lookup(self) -> Future:
         """Return a future for the look-up of poses, when all messages so far are processed."""
         future = Future()
-        self._calls.append(lambda: future.set_result(self._target.lookup))
-        self._wake()
+        self._call(lambda: future.set_result(self._target.lookup))
         return future
 
     def end(self) -> None:
@@ -163,26 +160,26 @@ class JointStates:
 
     @property
     def unreported(self) -> Unreported:
-        """The joints and models that no message has named in time, or whose stamps are old."""
+        """The joints and models that no message has named in time, and problems of sources."""
         target = self._next_target
         positions = target.frames.positions
         joints, models = ([], []) if self._end_grace in self._due else positions.unreported()
         topics = [
             topic.name for topic in self._sources.joint_state_topics
             if not positions.unknown(joints[:1], topic.model)] if joints else []
-        late = list(filter(None, map(self._effects.line_about_lateness, target.sources)))
-        return Unreported(len(joints), (*joints, '')[0], topics, models, late)
+        problems = self._effects.problems(target.sources)
+        return Unreported(len(joints), (*joints, '')[0], topics, models, problems)
 
     def _follow_sources(
         self, unwanted: Sequence[StateTopic], target: _Target | None = None,
     ) -> None:
-        """
-        Follow all sources. The executor alone does this, as it may find a new one itself.
-
-        :param unwanted: topics that are destroyed when the thread no longer awaits them.
-        """
+        """Follow all sources, and destroy topics then; the executor alone calls this."""
         self._next_target = (target or self._next_target)._replace(sources=self._sources.sources)
-        self._calls.append(lambda: self._sources.close(unwanted))
+        self._call(lambda: self._sources.close(unwanted))
+
+    def _call(self, function: Callable[[], object]) -> None:
+        """Have the thread call a function when all messages so far are processed."""
+        self._calls.append(function)
         self._wake()
 
     def _wake(self) -> None:
@@ -263,6 +260,7 @@ class JointStates:
         self._waiting = _NO_ROWS
         now = time.monotonic()
         self._due[self._publish_all] = self._due[self._publish_at_rest] = now
+        self._due[self._look_at_publishers] = now + PUBLISHERS_PERIOD_S
         if not self._has_reported_missing:
             self._due[self._end_grace] = now + GRACE_S
 
@@ -315,9 +313,8 @@ class JointStates:
             self._waiting = _NO_ROWS
 
     def _move(self, message: Message) -> NDArray[np.intp]:
-        target, effect = self._target, message.effect
-        source, positions = effect.source, target.frames.positions
-        ignores_stamps = target.settings.ignore_timestamp
+        target, effect, source = self._target, message.effect, message.effect.source
+        positions, ignores_stamps = target.frames.positions, target.settings.ignore_timestamp
         stamp_ns = message.stamp_ns or self._node.get_clock().now().nanoseconds
         if self._has_jumped and stamp_ns > self._now_ns:
             return _NO_ROWS  # it was sent before that
@@ -334,9 +331,6 @@ class JointStates:
             self._has_reported_missing = False
             models = ' and models' if positions.free_models else ''
             self._logger.info(f'all joints{models} have been reported now')
-        if values.ndim > 1:
-            for dof in effect.selection.changed:
-                source.note_model(positions.names[dof], self._sources_of_models)
         rows = self._effects.rows(effect)
         if len(rows) and not self._has_moved:
             self._has_moved = True
@@ -387,6 +381,10 @@ class JointStates:
     def _publish_at_rest(self) -> None:
         # Later listeners get the last positions.
         self._target.frames.publish_topics(only_listeners=False)
+
+    def _look_at_publishers(self) -> None:
+        self._due[self._look_at_publishers] = time.monotonic() + PUBLISHERS_PERIOD_S
+        self._effects.look_at_publishers()
 
     def _end_grace(self) -> None:
         """Report the joints and models that no message has named, once."""

@@ -13,6 +13,7 @@ from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
+from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from sdf_pose_bridge.ros.background import result_from_executor
 from sdf_pose_bridge.ros.cdr import poses_from_bytes
@@ -62,8 +63,7 @@ class OtherPublishers:
             name = self._node.resolve_topic_name(topic.name)
             # The other node may have the same name.
             own = sum(each.topic_name == name for each in self._node.publishers)
-            names = Counter(
-                f'{each.node_namespace.rstrip("/")}/{each.node_name}' for each in found)
+            names = Counter(names_of_nodes(found))
             names[self._node.get_fully_qualified_name()] -= own
             others[topic] = sorted(+names)
         if self._last == (gids, frames.tree):
@@ -90,11 +90,11 @@ class OtherPublishers:
     def _read(self, own_stamps_ns: Collection[int]) -> None:
         for topic, subscription in self._subscriptions.items():
             for _ in range(_MOST_WAITING):
-                data = take_message(subscription)
-                if data is None:
+                taken = take_message(subscription)
+                if taken is None:
                     break
                 with contextlib.suppress(ValueError):  # it is too large, or not from a ROS node
-                    self._compare(topic, data, own_stamps_ns)
+                    self._compare(topic, taken[0], own_stamps_ns)
 
     def _compare(self, topic: Topic, data: bytes, own_stamps_ns: Collection[int]) -> None:
         """Report the first frame in a message of another node that this node publishes too."""
@@ -116,6 +116,11 @@ class OtherPublishers:
                 self._reported.add((topic.name, child))
                 self._node.get_logger().warning(line)
             return
+
+
+def names_of_nodes(publishers: Sequence[TopicEndpointInfo]) -> list[str]:
+    """Return the full name of the node of each publisher, in alphabetical order."""
+    return sorted(f'{each.node_namespace.rstrip("/")}/{each.node_name}' for each in publishers)
 
 
 def _subscription(node: Node, topic: Topic) -> Subscription:

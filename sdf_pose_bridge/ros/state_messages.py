@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
+from functools import partial
 import math
 import time
 from typing import NamedTuple
@@ -21,7 +22,9 @@ from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.ros.cdr import NANOSECONDS, SerializedNames, StampedPose
 from sdf_pose_bridge.ros.log_lines import names_in_line
+from sdf_pose_bridge.ros.other_publishers import names_of_nodes
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
+from sdf_pose_bridge.ros.wait_set import NO_NUMBER
 from sdf_pose_bridge.tf.joint_motion import NO_DOF
 from sdf_pose_bridge.tf.joint_positions import LARGEST_POSITION, Selection
 from sdf_pose_bridge.tf.lookup import PoseLookup
@@ -50,6 +53,10 @@ _MOST_REPORTED = 1000
 
 _WARNING_PERIOD_S = 10.0
 
+_LEAST_OLDER = 3
+"""Smallest number of messages in a period the numbers of which do not go up, if there are several
+publishers. A publisher that starts again has one."""
+
 
 @dataclass(eq=False)
 class Effect:
@@ -68,6 +75,14 @@ class Effect:
     """The oldest last stamp of the transforms when a message moved none, as its own is older."""
     late_since: float = 0.0
     """Monotonic time in s since which there have been only such messages and this stamp."""
+    number: int = 0
+    """The number that its publisher has given the last message."""
+    message_count: int = 0
+    """Number of messages in this period of :meth:`Effects.look_at_publishers`."""
+    older_count: int = 0
+    """Number of these the number of which did not go up."""
+    period_count: int = 0
+    """Number of periods up to the last one, each with a message."""
 
 
 class Message(NamedTuple):
@@ -108,6 +123,9 @@ class StateSource:
         self.model = model
         self.last_ns = 0
         """Time of the node when the last message was used; the caller sets it."""
+        self.number = NO_NUMBER
+        """The number that its publisher has given the last message."""
+        self._node = node
         self._logger = node.get_logger()
         self._warnings_due: dict[str, float] = {}
         self._reported_names: set[str] = set()
@@ -130,10 +148,18 @@ class StateSource:
         """
         messages = self.messages(effects)
         for message in messages or ():
-            known = newest.get(message.effect, message)
+            effect = message.effect
+            effect.message_count += 1
+            effect.older_count += self.number <= effect.number < NO_NUMBER
+            effect.number = self.number
+            known = newest.get(effect, message)
             if not 0 < message.stamp_ns < known.stamp_ns:
-                newest[message.effect] = message
+                newest[effect] = message
         return messages is not None
+
+    def publishers(self) -> list[str]:
+        """Return the full name of the node of each publisher."""
+        return names_of_nodes(self._node.get_publishers_info_by_topic(self.name))
 
     def warn_about_invalid(self, names: Sequence[str]) -> None:
         """Log the joints or models whose values cannot be used, if there are any."""
@@ -141,15 +167,6 @@ class StateSource:
             self.warn('values', lambda: (
                 f'{self.name} has values for {names_in_line(names)} that are not finite or '
                 f'beyond {LARGEST_POSITION:g}; the last ones are kept'))
-
-    def note_model(self, model: str, sources_of_models: dict[str, list[str]]) -> None:
-        """Log that the poses of a model come from several sources, once."""
-        sources = sources_of_models.setdefault(model, [self.name])
-        if len(sources) == 1 and sources[0] != self.name:
-            sources.append(self.name)
-            self._logger.warning(
-                f'poses of {names_in_line([model])} come from {sources[0]} and from {self.name}; '
-                'the one with the newest stamp counts')
 
     def warn(self, about: str, text: Callable[[], str]) -> bool:
         """Log a warning, unless the last one about the same was not long ago."""
@@ -241,6 +258,7 @@ class Effects:
         self.last: dict[StateSource, Effect] = {}
         """The effect of the last message on each topic of joint states, as far as it is kept."""
         self._late: dict[StateSource, Lateness] = {}
+        self._lines_about_publishers: list[str] = []
         self._size = 0
 
     def of_joints(self, names: SerializedNames, source: StateSource) -> Effect:
@@ -308,7 +326,7 @@ class Effects:
         if last_ns - stamp_ns < _LEAST_AGE_NS or last_ns != effect.late_after_ns:
             # Others may move them, such as a second publisher with newer stamps.
             effect.late_since, effect.late_after_ns = now, last_ns
-        elif now - effect.late_since > LATE_S and not self.line_about_lateness(source):
+        elif now - effect.late_since > LATE_S and not self._is_late(source):
             first = self._positions.names[effect.selection.changed[0]]
             line = (
                 f'messages from {source.name} move nothing, for example {names_in_line([first])}: '
@@ -318,12 +336,50 @@ class Effects:
             self._late[source] = Lateness(line, effect.rows[stamps_ns == last_ns], last_ns)
             source.warn('stamps', lambda: line)
 
-    def line_about_lateness(self, source: StateSource) -> str:
-        """Return the line about messages that move nothing; '' if what they name moves again."""
+    def problems(self, sources: Iterable[StateSource]) -> list[str]:
+        """Return a line for each source that moves nothing, and for publishers of one joint."""
+        late = [each for each in sources if self._is_late(each)]
+        return [*(self._late[each].line for each in late), *self._lines_about_publishers]
+
+    def _is_late(self, source: StateSource) -> bool:
         late = self._late.get(source)
-        if late is None or (self._frames.last_stamps_ns(late.rows) != late.last_ns).any():
-            return ''
-        return late.line
+        return late is not None and bool(
+            (self._frames.last_stamps_ns(late.rows) == late.last_ns).all())
+
+    def look_at_publishers(self) -> None:
+        """
+        Report joints and models about which several publishers send messages at once.
+
+        These use several topics for two periods, as a publisher may replace another one in the
+        first; or their numbers do not go up on one topic, which has several publishers.
+        """
+        sources: dict[int, dict[str, StateSource]] = {}
+        found: dict[str, tuple[str, int, StateSource]] = {}
+        for effect in self._effects.values():
+            source, dofs = effect.source, effect.selection.dofs.tolist()
+            effect.period_count = effect.period_count + 1 if effect.message_count else 0
+            for dof in dofs if effect.period_count > 1 else ():
+                sources.setdefault(dof, {})[source.name] = source
+            if dofs and effect.older_count >= _LEAST_OLDER:
+                nodes = source.publishers()
+                if len(nodes) > 1:
+                    places = f'{names_in_line(nodes)} on {source.name}'
+                    found[source.name] = places, dofs[0], source
+            effect.message_count = effect.older_count = 0
+        for dof, by_name in sources.items():
+            if len(by_name) > 1:
+                places = ' and '.join(sorted(by_name))
+                found.setdefault(places, (places, dof, by_name.popitem()[1]))
+        self._lines_about_publishers = []
+        for topics, (places, dof, source) in found.items():
+            what, setting = ('model', 'model_pose_topics') if self._positions.is_model(dof) else (
+                'joint', 'joint_states_topics')
+            line = (
+                f'messages about {what} {names_in_line([self._positions.names[dof]])} come from '
+                f'several publishers at once, {places}; the newest stamp counts, so stop all but '
+                f'one, or leave a topic out of {setting}')
+            self._lines_about_publishers.append(line)
+            source.warn_once('publishers', [topics], partial(str, line))
 
     def _make_room(self, size: int) -> None:
         """Forget everything if it would be too much."""

@@ -77,8 +77,11 @@ class StateTopic(StateSource):
         super().__init__(node, self.subscription.topic_name, key.model)
 
     def messages(self, effects: Effects) -> Sequence[Message] | None:  # noqa: D102 - as above
-        data = take_message(self.subscription)
-        return None if data is None else self.read(data, effects)
+        taken = take_message(self.subscription)
+        if taken is None:
+            return None
+        data, self.number = taken
+        return self.read(data, effects)
 
     def read(self, data: bytes, effects: Effects) -> Sequence[Message]:
         """Read a serialized message; return nothing, with a warning, if it cannot be used."""

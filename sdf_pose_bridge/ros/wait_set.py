@@ -23,6 +23,9 @@ from sdf_pose_bridge.ros.cdr import NANOSECONDS
 
 _FOREVER = -1
 
+NO_NUMBER = 2**64 - 1
+"""The number of messages from a middleware that does not number them."""
+
 
 class NoExecutor(CallbackGroup):
     """The group of subscriptions for which no executor waits."""
@@ -92,8 +95,13 @@ class WaitSet:
         self._subscriptions = subscriptions
 
 
-def take_message(subscription: Subscription) -> bytes | None:
-    """Take a message that a subscription for serialized messages has; None if there is none."""
+def take_message(subscription: Subscription) -> tuple[bytes, int] | None:
+    """
+    Take a message that a subscription for serialized messages has.
+
+    :return: the message, and the number that its publisher has given it, which goes up, or
+        :data:`NO_NUMBER`; None if there is none.
+    """
     with subscription.handle:
         taken = subscription.handle.take_message(subscription.msg_type, True)
-    return None if taken is None else taken[0]
+    return None if taken is None else (taken[0], taken[1]['publication_sequence_number'])

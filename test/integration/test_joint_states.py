@@ -10,6 +10,7 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from bridge_process import LoggedProcess
+from builtin_interfaces.msg import Time
 from changes import (
     asked_to_reload,
     BRIDGE,
@@ -23,7 +24,9 @@ from changes import (
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PoseStamped, TransformStamped
 from listener import latched
+from sensor_msgs.msg import JointState
 from slow_file import SlowFile
+from std_msgs.msg import Header
 
 from sdf_pose_bridge_interfaces.srv import LookupPose
 
@@ -167,6 +170,30 @@ def test_stamps_that_go_back_are_in_the_log_and_in_diagnostics_until_they_move_f
     set_parameters(tf.listener, ignore_timestamp=True)
     tf.wait_for('slide', joints.send({'lift': 0.5}, sec=old))
     monitor.wait_for(DiagnosticStatus.OK)
+
+
+def test_two_publishers_of_a_joint_are_in_the_log_and_in_diagnostics_until_one_is_gone(
+        follow, joints, tf, start_listener):
+    bridge = follow()
+    monitor = Monitor(tf.listener)
+    monitor.wait_for(DiagnosticStatus.OK)
+    other = start_listener()
+    others = [other.node.create_publisher(JointState, 'joint_states', 10)]
+
+    def is_at(level):
+        sec = joints.send({'turn': 0.0, 'lift': 0.0})
+        for each in others:
+            each.publish(JointState(
+                header=Header(stamp=Time(sec=sec)), name=['turn', 'lift'], position=[1.0, 0.0]))
+        return monitor.status.level == level
+
+    tf.listener.wait(lambda: is_at(DiagnosticStatus.WARN), lambda: monitor.status)
+    words = 'messages about joint "turn" come from several publishers at once, "/'
+    assert monitor.status.message.startswith(words)
+    assert '"/test_listener", "/test_listener" on /joint_states;' in monitor.status.message
+    other.node.destroy_publisher(others.pop())
+    tf.listener.wait(lambda: is_at(DiagnosticStatus.OK), lambda: monitor.status)
+    assert sum(words in line for line in bridge.lines) == 1
 
 
 def test_later_listeners_get_the_last_positions(follow, joints, tf):

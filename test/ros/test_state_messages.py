@@ -2,10 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """What poses of models change, and the ones that are ignored."""
 
+import time
+
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
+from geometry_msgs.msg import PoseStamped
 from sdf_texts import joint, world_file
 
 from sdf_pose_bridge import load_text
@@ -14,6 +17,7 @@ from sdf_pose_bridge.ros.cdr import StampedPose
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.ros.state_messages import Effects, StateSource
+from sdf_pose_bridge.ros.wait_set import NO_NUMBER
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
@@ -128,3 +132,70 @@ def test_poses_in_the_root_with_one_stamp_are_one_message(models):
     assert found == [(['a', 'a/b'], [4.0, 1.0], 5), (['a'], [3.0], 6), (['a/b'], [5.0], 5)]
     again = models.source.messages_from_poses(poses[1::-1], models.effects)
     assert again[0].effect is messages[0].effect
+
+
+# Publishers
+
+@pytest.fixture(name='look')
+def make_look(models, make_node):
+    """
+    Sends messages and returns the lines about publishers; ``look(*periods)``.
+
+    A period has messages, each as a source, the number of its publisher and a model.
+    """
+    other = make_node('other')
+    publishers = [other.create_publisher(PoseStamped, '/poses', 10) for _ in range(2)]
+    sources = {'poses': models.source, 'alone': StateSource(models.source._node, '/alone')}
+    publishers.append(other.create_publisher(PoseStamped, '/alone', 10))
+    deadline = time.monotonic() + 20.0
+    while [len(each.publishers()) for each in sources.values()] != [2, 1]:
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+
+    def look(*periods):
+        for period in periods:
+            for name, number, child in period:
+                source = sources[name]
+                source.number = number
+                source.messages = lambda effects, source=source, child=child: (
+                    source.messages_from_poses(
+                        [StampedPose(5, '', child, TURNED)], effects))
+                source.take(models.effects, {})
+            models.effects.look_at_publishers()
+        return models.effects.problems([])
+    return look
+
+
+BOTH = [('poses', 1, 'a'), ('alone', 1, 'a')]
+TURNS = [('poses', number, 'a') for number in (7, 1, 8, 2, 9, 3)]
+
+
+def test_publishers_of_one_model_on_two_topics_are_reported_as_long_as_it_lasts(look, capfd):
+    line = 'messages about model "a" come from several publishers at once, /alone and /poses; '
+    assert not look(BOTH)
+    found = look(BOTH)
+    assert len(found) == 1
+    assert found[0].startswith(line)
+    assert not look(BOTH[:1])
+    look(BOTH, BOTH)
+    assert capfd.readouterr().err.count(line) == 1
+
+
+def test_publishers_of_one_model_on_one_topic_are_reported(look):
+    line = 'messages about model "a" come from several publishers at once, "/other", "/other" on'
+    found = look(TURNS)
+    assert len(found) == 1
+    assert found[0].startswith(line)
+    assert not look([])
+
+
+@pytest.mark.parametrize('periods', [
+    [BOTH[:1], BOTH, BOTH[1:]],
+    [[('alone', number, 'a') for _, number, _ in TURNS]],
+    [[('poses', NO_NUMBER, 'a')] * 6] * 2,
+    [[('poses', number, 'a') for number in (7, 8, 1, 2, 3)]] * 2,
+    [[(*each, ('a', 'a::b')[row % 2]) for row, (*each, _) in enumerate(TURNS)]],
+], ids=['replaced', 'one publisher', 'no numbers', 'restarted', 'different models'])
+def test_publishers_that_are_not_several_at_once_are_not_reported(look, periods):
+    for period in periods:
+        assert not look(period)
