@@ -30,7 +30,6 @@ from sdf_pose_bridge.cli.viewer.view_point import (
     grid_spacing_m,
     home_view,
 )
-from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.geometry.units import Unit
 from sdf_pose_bridge.names import printable, SEPARATOR, shortened
@@ -79,7 +78,7 @@ class VisiblePart:
         """The frames, indices into the TF tree."""
         bodies = [element for element in scene.shapes if is_shown[element]
                   and f'{Kind(scene.kinds[element]).label}s' not in hidden]
-        origins = tree.poses[:, :3]
+        origins = shown.poses[:, :3]
         self.surfaces, not_drawn = surfaces_from_scene(
             scene, bodies, _extent_m(origins, scene.poses[bodies, :3]), meshes)
         """The surfaces of visuals and collisions."""
@@ -102,7 +101,7 @@ class VisiblePart:
         self.view_m = math.dist(*bounds) or self.size_m
         """The extent of the first view, without axes."""
         self.axes_length_m = _length_of_axes(tree, self.view_m)
-        self.bounds = bounds_with_axes(bounds, tree.poses[self.frames], self.axes_length_m)
+        self.bounds = bounds_with_axes(bounds, shown.poses[self.frames], self.axes_length_m)
         """The lowest and the highest corner of the first view, shape (2, 3)."""
         self.home = home_view(self.bounds, origins, boxes)
         """The first view."""
@@ -144,7 +143,7 @@ class Drawing:
             for lines, color, width in (
                 ('lines to parents', _LINE_COLOR, 2.0), ('measured', _MEASURED_COLOR, 3.0)))
         self._axes = nodes.add_batched_axes(
-            f'{name}/frames', *_places(visible.shown.tree.poses[visible.frames]),
+            f'{name}/frames', *_places(visible.shown.poses[visible.frames]),
             axes_length=length_m, axes_radius=0.035 * length_m)
         self._select_by_click(self._axes, visible.frames)
         self._copies = [
@@ -167,43 +166,40 @@ class Drawing:
             line, its text, whether names do not cover it, and x, y and z of the point that it is
             right of and below.
         """
-        scene, tree, visible = shown.scene, shown.tree, self.visible
+        scene, visible, origins = shown.scene, self.visible, shown.poses[:, :3]
         self._axes.batched_wxyzs, self._axes.batched_positions = _places(
-            tree.poses[visible.frames])
+            shown.poses[visible.frames])
         for copies, elements in self._copies:
             copies.batched_wxyzs, copies.batched_positions = _places(scene.poses[elements])
         children = visible.frames.tolist()
         if 'all lines to parents' in visible.hidden:
             # Those from the frame to its root.
-            children, index = [], frame
-            while index >= 0:
-                children.append(index)
-                index = int(tree.parents[index])
-        self._lines.points = np.array([
-            [shown.pose_of(index)[:3] for index in (tree.parents[child], child)]
-            for child in children if tree.parents[child] != NO_PARENT]).reshape(-1, 2, 3)
-        labels: list[tuple[object, ...]] = []
-        measured = np.zeros((0, 2, 3))
-        self._marker.visible = frame >= 0
-        if frame >= 0:
-            pose, origin = shown.pose_of(frame), shown.pose_of(reference)
-            self._marker.position, self._marker.wxyz = pose[:3], (pose.qw, *pose[3:6])
-            if reference != ROOT_IS_PARENT:
-                measured = np.array([[origin[:3], pose[:3]]])
-                length_m = math.dist(origin[:3], pose[:3])
-                labels.append((f'{unit.factor * length_m:.{unit.digits}f} {unit.name}', True,
-                               *measured[0].mean(axis=0)))
-        self._measured.points = measured
+            children = [frame]
+            while children[-1] >= 0:
+                children.append(int(shown.tree.parents[children[-1]]))
+            children.pop()
+        parents = shown.tree.parents[children]
+        self._lines.points = np.stack(
+            [origins[parents], origins[children]], axis=1)[parents != NO_PARENT]
         missing = (element for surface in visible.surfaces if surface.reason
                    for element in surface.elements)
-        labels += [
+        labels = [
             (f'{_last_part(scene.shapes[element].mesh_uri)}?', True, *scene.poses[element, :3])
             for element in islice(missing, MOST_NAMES)]
+        measured = np.zeros((0, 2, 3))
+        if ROOT_IS_PARENT not in (reference, frame):
+            measured = origins[[[reference, frame]]]
+            length_m = math.dist(*measured[0])
+            labels.insert(0, (f'{unit.factor * length_m:.{unit.digits}f} {unit.name}', True,
+                              *measured[0].mean(axis=0)))
+        self._measured.points = measured
         named = visible.frames[:0 if 'all names' in visible.hidden else MOST_NAMES].tolist()
-        return json.dumps(labels + [
-            (printable(shortened(shown.short_names[index])), index == frame,
-             *tree.poses[index, :3])
-            for index in dict.fromkeys((*named, frame)) if index >= 0])
+        labels += [
+            (printable(shortened(shown.short_names[index])), index == frame, *origins[index])
+            for index in dict.fromkeys((*named, frame)) if index >= 0]
+        self._marker.visible = frame >= 0
+        self._marker.wxyz, self._marker.position = _places(shown.poses[frame])
+        return json.dumps(labels)
 
     def _add_surroundings(self) -> None:
         """Add light from above and from two sides, and a grid on the ground."""
@@ -254,9 +250,9 @@ class Drawing:
         copies.on_click(lambda event: self._select(int(frames[event.instance_index or 0])))
 
 
-def _places(poses: PoseArray) -> tuple[Floats, Floats]:
-    """Return quaternions w x y z and positions, as viser takes them."""
-    return poses[:, _WXYZ], poses[:, :3]
+def _places(poses: Floats) -> tuple[Floats, Floats]:
+    """Return quaternions w x y z and positions, as viser takes them, of poses (..., 7)."""
+    return poses[..., _WXYZ], poses[..., :3]
 
 
 def _names_of_bodies(shown: ShownScene, surface: DrawnSurface) -> list[str]:

@@ -20,7 +20,6 @@ from sdf_pose_bridge.geometry.units import POSE_LABELS, Units
 from sdf_pose_bridge.names import is_name_of_proxy, printable, quoted_names, SEPARATOR
 from sdf_pose_bridge.scene.pose_setting import place_of_pose
 from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT
-from sdf_pose_bridge.tf.tree import TfTree
 
 
 def escaped(text: str) -> str:
@@ -121,10 +120,10 @@ def html_of_pose_in_file(shown: ShownScene, frame: int, units: Units) -> str:
         + (f'{xyz}, {rpy}' if is_written else 'no pose'))
 
 
-def html_of_moved(old: TfTree, new: TfTree, frame: int) -> str:
-    """Name the other frames that are elsewhere in a tree of the same frames; empty for none."""
+def html_of_moved(old: ShownScene, new: ShownScene, frame: int) -> str:
+    """Name the other frames that are elsewhere in a scene of the same frames; empty for none."""
     is_moved = (np.abs(new.poses - old.poses) > 1e-9).any(axis=1)
-    names = [old.frame_ids[index] for index in np.flatnonzero(is_moved) if index != frame]
+    names = [old.ids[index] for index in np.flatnonzero(is_moved).tolist() if index != frame]
     text = escaped(quoted_names(names))
     return f'<div class="moved">moves with it: {text}</div>' if names else ''
 

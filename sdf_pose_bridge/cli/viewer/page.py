@@ -226,7 +226,7 @@ class Page:
         if frame >= 0:
             strip = (f'{html_of_place(drawn, frame, reference, units)}'
                      f'<div>{html_of_pose_in_file(shown, frame, units)}</div>'
-                     + html_of_moved(shown.tree, drawn.tree, frame) + strip)
+                     + html_of_moved(shown, drawn, frame) + strip)
         self._labels.content = html_of_data(
             'labels', self._drawing.show(drawn, frame, reference, units.length))
         selected.describe(html_of_frame(drawn, frame, reference, units) if frame >= 0 else '')
@@ -301,7 +301,7 @@ class Page:
             view = view_of_bounds(visible.bounds, DIRECTIONS[name])
         elif name == 'zoom to' and self._selected.frame >= 0:
             shown, frame = self._shown, self._selected.frame
-            origin, half_m = shown.tree.poses[frame, :3], 3.0 * visible.axes_length_m
+            origin, half_m = shown.poses[frame, :3], 3.0 * visible.axes_length_m
             boxes = visible.boxes(shown, shown.element_of(frame))
             view = view_of_bounds(
                 bounds_of_points(origin - half_m, origin + half_m, boxes),

@@ -7,13 +7,15 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 import copy
-from dataclasses import replace
 from itertools import accumulate, chain
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from sdf_pose_bridge import Pose, Scene, scene_at_positions
 from sdf_pose_bridge.geometry.poses import relative_pose
+from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.tf.joint_positions import leading_dofs
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import elements_in_model, tf_tree_from_scene, TfOptions
@@ -78,7 +80,9 @@ class ShownScene:
         self.scene = scene_at_positions(loaded, self.positions)
         """The scene at these positions."""
         self.tree = tf_tree_from_scene(self.scene, options)
-        """The TF tree at these positions."""
+        """The TF tree at the first positions."""
+        self.poses = _with_root(self.tree.poses)
+        """Shape (n + 1, 7): the poses of all frames in the root frame, and of the root frame."""
         self.ids: Sequence[str] = (*self.tree.frame_ids, self.tree.root_frame)
         """The ids of all frames, and of the root frame, at the index ``ROOT_IS_PARENT``."""
         self.short_names: Sequence[str] = short_names(self.tree.frame_ids)
@@ -94,14 +98,14 @@ class ShownScene:
         shown = copy.copy(self)
         shown.positions, shown.scene = positions, scene_at_positions(
             scene or self.loaded, positions)
-        shown.tree = tf_tree_from_scene(shown.scene, self._options)
+        shown.poses = _with_root(tf_tree_from_scene(shown.scene, self._options).poses)
         return shown
 
     def with_pose(self, frame: int, pose: Pose) -> ShownScene:
         """Return the scene with a frame at another pose; other frames stay."""
-        poses, shown = self.tree.poses.copy(), copy.copy(self)
-        poses[frame] = pose
-        shown.tree = replace(self.tree, poses=poses)
+        shown = copy.copy(self)
+        shown.poses = self.poses.copy()
+        shown.poses[frame] = pose
         return shown
 
     def element_of(self, frame: int) -> int:
@@ -110,8 +114,12 @@ class ShownScene:
 
     def pose_of(self, frame: int) -> Pose:
         """Return the pose of a frame in the root frame, for which ``ROOT_IS_PARENT`` stands."""
-        return Pose() if frame == ROOT_IS_PARENT else Pose(*self.tree.poses[frame].tolist())
+        return Pose(*self.poses[frame].tolist())
 
     def pose_in(self, reference: int, frame: int) -> Pose:
         """Return the pose of a frame in another one."""
         return relative_pose(self.pose_of(reference), self.pose_of(frame))
+
+
+def _with_root(poses: Floats) -> Floats:
+    return np.append(poses, [Pose()], axis=0)

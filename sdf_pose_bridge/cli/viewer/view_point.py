@@ -12,7 +12,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.geometry.rotations import Floats, matrix_from_quaternion, Triple
 
 FIELD_OF_VIEW_RAD = 0.8
@@ -69,7 +68,7 @@ def bounds_of_interest(origins: Floats, boxes: Floats, robot: Floats) -> Floats:
     return bounds_of_points(bounds, chosen)
 
 
-def bounds_with_axes(bounds: Floats, poses: PoseArray, length_m: float) -> Floats:
+def bounds_with_axes(bounds: Floats, poses: Floats, length_m: float) -> Floats:
     """
     Return bounds that contain the axes of the frames in given bounds.
 

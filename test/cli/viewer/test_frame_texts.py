@@ -76,9 +76,9 @@ def test_arguments_of_static_transform_publisher(described):
 
 
 def test_frames_that_move_with_another_are_named(scene):
-    old = tf_tree_from_scene(scene)
-    frame = old.frame_ids.index('m')
-    new = tf_tree_from_scene(load_text(TEXT.replace('<pose>1 2', '<pose>9 2').encode(), 'a.sdf'))
+    old = ShownScene(scene, TfOptions())
+    frame = old.ids.index('m')
+    new = old.at({}, load_text(TEXT.replace('<pose>1 2', '<pose>9 2').encode(), 'a.sdf'))
     assert html_of_moved(old, new, frame) == (
         '<div class="moved">moves with it: &quot;m/l&quot;, &quot;m/l/s&quot;, &quot;m/f&quot;, '
         '&quot;m/l/s_optical&quot;</div>')
