@@ -109,10 +109,12 @@ class VisiblePart:
         self.ground_m = boxes[sizes_m <= self.view_m, 0, 2].min(initial=0.0)
         """The height of the ground, on which the grid is."""
 
-    def boxes(self, shown: ShownScene, element: int) -> Floats:
-        """Return the boxes around the visuals and collisions in an element, shape (n, 2, 3)."""
-        is_in = shown.scene.are_in([element])[self._bodies]
-        return np.asarray(boxes_of_surfaces(shown.scene, self.surfaces)[is_in])
+    def bounds_of_frame(self, shown: ShownScene, frame: int) -> Floats:
+        """Return the lowest and the highest corner of a frame and the bodies in its element."""
+        is_in = shown.scene.are_in([shown.element_of(frame)])[self._bodies]
+        reach_m = np.array([[-3.0], [3.0]]) * self.axes_length_m
+        return bounds_of_points(
+            shown.poses[frame, :3] + reach_m, boxes_of_surfaces(shown.scene, self.surfaces)[is_in])
 
 
 class Drawing:

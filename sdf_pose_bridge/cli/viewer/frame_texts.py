@@ -100,32 +100,34 @@ def _relative_to(scene: Scene, element: int, reference: int) -> str:
     return f' relative_to={quoteattr(scene.names[reference].removeprefix(scope))}'
 
 
-def html_of_place(shown: ShownScene, frame: int, reference: int, units: Units) -> str:
-    """Write the pose of a frame in another one in a line."""
+def html_of_selection(
+    shown: ShownScene, drawn: ShownScene, frame: int, reference: int, units: Units,
+) -> str:
+    """
+    Describe a frame in a few lines.
+
+    :param drawn: the scene with the new pose that is drawn, if there is one.
+    :return: its pose in another frame, the pose that places it in its file, and the other frames
+        that the new pose moves.
+    """
+    is_moved = (np.abs(drawn.poses - shown.poses) > 1e-9).any(axis=1)
+    names = [shown.ids[index] for index in np.flatnonzero(is_moved).tolist() if index != frame]
+    moved = f'<div class="moved">moves with it: {escaped(quoted_names(names))}</div>'
     return (f'<b>{escaped(shown.ids[frame])}</b> in {escaped(shown.ids[reference])}: '
-            f'{", ".join(_place(shown, reference, frame, units))}')
+            f'{", ".join(_place(drawn, reference, frame, units))}'
+            f'<div>{escaped(_pose_in_file(shown, frame, units))}</div>{moved if names else ""}')
 
 
-def html_of_pose_in_file(shown: ShownScene, frame: int, units: Units) -> str:
+def _pose_in_file(shown: ShownScene, frame: int, units: Units) -> str:
     """Write the pose that places a frame in its file; empty for a frame without an element."""
     scene, element = shown.loaded, shown.element_of(frame)
     if element < 0:
         return ''
     path, line, is_written = place_of_pose(scene, element)
     reference = int(scene.references[element])
-    xyz, rpy = _texts(units, scene.relative_pose_of(
-        scene.placements.get(element, element), reference))
-    return escaped(
-        f'in the file {Path(path).resolve()}:{line}{_relative_to(scene, element, reference)}: '
-        + (f'{xyz}, {rpy}' if is_written else 'no pose'))
-
-
-def html_of_moved(old: ShownScene, new: ShownScene, frame: int) -> str:
-    """Name the other frames that are elsewhere in a scene of the same frames; empty for none."""
-    is_moved = (np.abs(new.poses - old.poses) > 1e-9).any(axis=1)
-    names = [old.ids[index] for index in np.flatnonzero(is_moved).tolist() if index != frame]
-    text = escaped(quoted_names(names))
-    return f'<div class="moved">moves with it: {text}</div>' if names else ''
+    pose = scene.relative_pose_of(scene.placements.get(element, element), reference)
+    return (f'in the file {Path(path).resolve()}:{line}{_relative_to(scene, element, reference)}: '
+            + (', '.join(_texts(units, pose)) if is_written else 'no pose'))
 
 
 def html_of_difference(old: Pose, new: Pose, reference: Pose, units: Units) -> str:

@@ -19,10 +19,8 @@ from sdf_pose_bridge.cli.viewer.frame_texts import (
     html_of_data,
     html_of_frame,
     html_of_lines,
-    html_of_moved,
-    html_of_place,
-    html_of_pose_in_file,
     html_of_reasons,
+    html_of_selection,
     rows_of_tree,
 )
 from sdf_pose_bridge.cli.viewer.joint_sliders import JointSliders
@@ -31,7 +29,6 @@ from sdf_pose_bridge.cli.viewer.pose_edit import FindChange, PoseEdit
 from sdf_pose_bridge.cli.viewer.server import Events, page_with_script, server_for_its_owner
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.cli.viewer.view_point import (
-    bounds_of_points,
     DIRECTIONS,
     FIELD_OF_VIEW_RAD,
     view_in_window,
@@ -150,8 +147,9 @@ class Page:
         data = gui.add_panel()
         data.float()
         with data.add_tab('data'):
-            self._errors, self._strip, self._names, self._labels, self._opacity = (
-                gui.add_html('') for _ in range(5))
+            self._data = {
+                name: gui.add_html('')
+                for name in ('errors', 'strip', 'names', 'labels', 'opacity')}
             gui.add_html('<div class="asked"></div>')
             asked = gui.add_text('asked', '')
         self._events.when(asked.on_update, lambda: self._answer(asked.value.partition(' ')[2]))
@@ -186,7 +184,7 @@ class Page:
 
     def show_errors(self, errors: str) -> None:
         """Show the errors of the file, in HTML, over its last scene."""
-        self._errors.content = html_of_data('errors', errors)
+        self._tell_script('errors', errors)
 
     def act(self) -> None:
         """Process the requests of the tab."""
@@ -224,20 +222,20 @@ class Page:
             if edit.pose is not None:
                 drawn = drawn.with_pose(frame, edit.pose)
         if frame >= 0:
-            strip = (f'{html_of_place(drawn, frame, reference, units)}'
-                     f'<div>{html_of_pose_in_file(shown, frame, units)}</div>'
-                     + html_of_moved(shown, drawn, frame) + strip)
-        self._labels.content = html_of_data(
-            'labels', self._drawing.show(drawn, frame, reference, units.length))
+            strip = html_of_selection(shown, drawn, frame, reference, units) + strip
+        self._tell_script('labels', self._drawing.show(drawn, frame, reference, units.length))
         selected.describe(html_of_frame(drawn, frame, reference, units) if frame >= 0 else '')
-        self._strip.content = html_of_data('strip', strip)
+        self._tell_script('strip', strip)
+
+    def _tell_script(self, name: str, value: str) -> None:
+        self._data[name].content = html_of_data(name, value)
 
     def _new_drawing(self) -> Drawing:
         hidden = self._hidden, self._selected.hidden
         self._drawn_for = self._shown.loaded, *map(frozenset, hidden)
         visible = VisiblePart(self._shown, self._meshes, *hidden)
         self._reasons.content = html_of_reasons(visible.reasons)
-        self._names.content = html_of_data('names', visible.names)
+        self._tell_script('names', visible.names)
         return Drawing(
             self._client.scene, next(self._node_names), visible,
             lambda frame: self._events.put(partial(self._selected.answer, 'select', frame)))
@@ -286,8 +284,8 @@ class Page:
                 'angles', tuple(_ANGLES), initial_value=units.angle.name)
             dark = gui.add_checkbox('dark background', initial_value=False)
         self._events.when(views.on_click, lambda: self._look(views.value))
-        self._events.when(opacity.on_update, lambda: setattr(
-            self._opacity, 'content', html_of_data('opacity', str(opacity.value))))
+        self._events.when(
+            opacity.on_update, lambda: self._tell_script('opacity', str(opacity.value)))
         self._events.when(angles.on_update)
         self._events.when(dark.on_update, lambda: gui.configure_theme(
             show_logo=False, show_share_button=False, dark_mode=dark.value))
@@ -300,12 +298,8 @@ class Page:
         if name in DIRECTIONS:
             view = view_of_bounds(visible.bounds, DIRECTIONS[name])
         elif name == 'zoom to' and self._selected.frame >= 0:
-            shown, frame = self._shown, self._selected.frame
-            origin, half_m = shown.poses[frame, :3], 3.0 * visible.axes_length_m
-            boxes = visible.boxes(shown, shown.element_of(frame))
-            view = view_of_bounds(
-                bounds_of_points(origin - half_m, origin + half_m, boxes),
-                view.position - view.look_at)
+            bounds = visible.bounds_of_frame(self._shown, self._selected.frame)
+            view = view_of_bounds(bounds, view.position - view.look_at)
         client.camera.position, client.camera.look_at = view_in_window(view, client.camera.aspect)
         client.camera.up_direction = 0.0, 0.0, 1.0
 

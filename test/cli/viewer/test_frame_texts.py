@@ -12,10 +12,8 @@ import pytest
 from sdf_pose_bridge.cli.viewer.frame_texts import (
     html_of_difference,
     html_of_frame,
-    html_of_moved,
-    html_of_place,
-    html_of_pose_in_file,
     html_of_reasons,
+    html_of_selection,
     rows_of_tree,
 )
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
@@ -77,20 +75,12 @@ def test_arguments_of_static_transform_publisher(described):
 
 def test_frames_that_move_with_another_are_named(scene):
     old = ShownScene(scene, TfOptions())
-    frame = old.ids.index('m')
     new = old.at({}, load_text(TEXT.replace('<pose>1 2', '<pose>9 2').encode(), 'a.sdf'))
-    assert html_of_moved(old, new, frame) == (
-        '<div class="moved">moves with it: &quot;m/l&quot;, &quot;m/l/s&quot;, &quot;m/f&quot;, '
-        '&quot;m/l/s_optical&quot;</div>')
-    assert html_of_moved(old, old, frame) == ''
-
-
-def test_place_of_a_frame_is_one_line_of_text(scene):
-    shown = ShownScene(scene, TfOptions())
-    frame, reference = map(shown.ids.index, (HOSTILE, 'm/l'))
-    assert html_of_place(shown.with_pose(reference, Pose(x=-0.5)), frame, reference, Units()) == (
-        f'<b>{html.escape(HOSTILE)}</b> in m/l: xyz 0.5000 0.0000 0.0000 m, '
-        'rpy 0.0000 0.0000 0.0000 rad')
+    frame = old.ids.index('m')
+    moved = ('<div class="moved">moves with it: &quot;m/l&quot;, &quot;m/l/s&quot;, '
+             '&quot;m/f&quot;, &quot;m/l/s_optical&quot;</div>')
+    assert html_of_selection(old, new, frame, ROOT_IS_PARENT, Units()).endswith(moved)
+    assert 'moves' not in html_of_selection(old, old, frame, ROOT_IS_PARENT, Units())
 
 
 def test_first_reason_is_a_line_of_its_own():
@@ -128,10 +118,15 @@ def test_optical_frame_has_no_name_in_the_file(described):
     ('m', ':1 relative_to="world": xyz 1.0000 2.0000 3.0000 m, rpy 0.0000 0.0000 1.5000 rad'),
     ('m/f', ':3 relative_to="l": xyz 0.5000 0.0000 0.0000 m, rpy 0.0000 0.0000 0.0000 rad'),
     ('m/l', ':2 relative_to="m": no pose'), ('m/l/s_optical', '')])
-def test_pose_as_it_stands_in_the_file(scene, frame, line):
+def test_pose_in_another_frame_and_in_the_file(scene, frame, line):
     shown = ShownScene(scene, TfOptions())
-    text = html.unescape(html_of_pose_in_file(shown, shown.ids.index(frame), Units()))
-    assert text == (line and f'in the file {Path("cell.sdf").resolve()}{line}')
+    index = shown.ids.index(frame)
+    text = html_of_selection(
+        shown, shown.with_pose(index, Pose(x=0.5)), index, ROOT_IS_PARENT, Units())
+    in_file = line and f'in the file {Path("cell.sdf").resolve()}{line}'
+    assert html.unescape(text).startswith(
+        f'<b>{frame}</b> in world: xyz 0.5000 0.0000 0.0000 m, rpy 0.0000 0.0000 0.0000 rad'
+        f'<div>{in_file}</div>')
 
 
 def test_name_is_text(scene):

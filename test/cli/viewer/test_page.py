@@ -61,7 +61,7 @@ def select(page, frame):
 
 
 def labels(page):
-    (data,) = re.findall('data-labels="([^"]*)"', page._labels.content)
+    (data,) = re.findall('data-labels="([^"]*)"', page._data['labels'].content)
     return json.loads(html.unescape(data))
 
 
@@ -143,12 +143,13 @@ def test_line_joins_the_frames_that_are_measured(page_of):
     assert labels(page)[0] == ['3.7417 m', True, 0.5, 1.0, 1.5]
 
 
-def test_boxes_of_one_element(page_of):
+def test_bounds_of_one_frame_and_its_bodies(page_of):
     box = '<visual name="{}"><pose>{} 0 0 0 0 0</pose><geometry><box/></geometry></visual>'
     page = page_of(box.format('a', 0) + box.format('b', 5))
-    element = page._shown.loaded.names.index('m::l::b')
-    (found,) = page._drawing.visible.boxes(page._shown, element)
-    assert found.tolist() == [[4.5, -0.5, -0.5], [5.5, 0.5, 0.5]]
+    visible, frame = page._drawing.visible, page._shown.ids.index('l')
+    reach_m = 3.0 * visible.axes_length_m
+    assert visible.bounds_of_frame(page._shown, frame).tolist() == [
+        [-max(0.5, reach_m)] * 3, [5.5, *[max(0.5, reach_m)] * 2]]
 
 
 def test_page_says_so_when_collisions_are_switched_on(page_of):
