@@ -50,12 +50,12 @@ def test_each_joint_moves_through_its_range_once(gui, monkeypatch):
     ranges = {'m/j': JointRange(False, -3.0, -1.0), 'm/k': JointRange(True, 0.0, 1.0)}
     events = Events(wake := Event())
     joints = JointSliders(gui, ranges, {'m/k': 0.5}, Units(), events)
-    _, button, *sliders = gui._gui_input_handle_from_uuid.values()
+    _, button, *_ = gui._gui_input_handle_from_uuid.values()
     button.value = True
     wake.wait(20.0)
     (action,) = events.asked()
     action()
-    values = [[slider.value for slider in sliders] for _ in joints.moves]
+    values = [joints.positions.values() for _ in joints.moves]
     first, second = zip(*values, strict=True)
     assert (min(first), max(first), first[-1]) == (-3.0, -1.0, -1.0)
     assert (min(second), max(second), second[-1]) == (0.0, 1.0, 0.5)

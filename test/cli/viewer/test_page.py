@@ -143,13 +143,12 @@ def test_line_joins_the_frames_that_are_measured(page_of):
     assert labels(page)[0] == ['3.7417 m', True, 0.5, 1.0, 1.5]
 
 
-def test_bounds_of_one_frame_and_its_bodies(page_of):
-    box = '<visual name="{}"><pose>{} 0 0 0 0 0</pose><geometry><box/></geometry></visual>'
-    page = page_of(box.format('a', 0) + box.format('b', 5))
-    visible, frame = page._drawing.visible, page._shown.ids.index('l')
-    reach_m = 3.0 * visible.axes_length_m
-    assert visible.bounds_of_frame(page._shown, frame).tolist() == [
-        [-max(0.5, reach_m)] * 3, [5.5, *[max(0.5, reach_m)] * 2]]
+def test_bounds_of_a_frame_have_its_axes_and_bodies(page_of):
+    page = page_of('<visual name="v"><pose>5 0 0 0 0 0</pose><geometry><box/></geometry></visual>')
+    visible = page._drawing.visible
+    lowest, highest = visible.bounds_of_frame(page._shown, page._shown.ids.index('l'))
+    assert (lowest[0], highest[0]) == (-3.0 * visible.axes_length_m, 5.5)
+    assert visible.bounds_of_frame(page._shown, -1)[1, 0] == 3.0 * visible.axes_length_m
 
 
 def test_page_says_so_when_collisions_are_switched_on(page_of):

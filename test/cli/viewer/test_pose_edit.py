@@ -53,58 +53,57 @@ def written(server):
     return poses, PoseEdit(server, ShownScene(SCENE, TfOptions()), change, Events(Event()))
 
 
-def edited(name, x=0.0, pose=POSE, scene=SCENE):
-    """Return a scene with a frame at a pose, and the frame, relative to one at (x, 0, 0)."""
+def show(edit, name='free', *, x=0.0, pose=POSE, scene=SCENE, units=UNITS):
+    """Show a frame at a pose, relative to one at (x, 0, 0), as a page that has time does."""
     shown = ShownScene(scene, TfOptions())
     frame, reference = map(shown.ids.index, (name, 'm'))
-    return shown.with_pose(frame, pose).with_pose(reference, Pose(x=x)), frame, reference
-
-
-def begin(edit, frame, units=UNITS):
-    """Edit a frame, and find out whether it can be placed."""
-    edit.refresh(*frame, units)
+    shown = shown.with_pose(frame, pose).with_pose(reference, Pose(x=x))
+    edit.refresh(shown, frame, reference, units)
     edit.look_ahead()
-    edit.refresh(*frame, units)
+    edit.refresh(shown, frame, reference, units)
 
 
 def drag(edit, z):
     """Move the gizmo to (0, 0, z), as a browser does."""
     edit._gizmo.position, edit._gizmo.wxyz = (0.0, 0.0, z), (1.0, 0.0, 0.0, 0.0)
-    edit.refresh(*edited('free'), UNITS)
+    show(edit)
+
+
+def texts(edit):
+    return [number.value for number in edit._numbers]
 
 
 def test_cancelled_edit_moves_the_gizmo_back(written):
     _, edit = written
-    begin(edit, edited('free'))
+    show(edit)
     drag(edit, 1.0)
-    assert [number.value for number in edit._numbers[:3]] == ['0.0000', '0.0000', '1.0000']
+    assert texts(edit)[:3] == ['0.0000', '0.0000', '1.0000']
     edit.actions['cancel']()
-    edit.refresh(*edited('free'), UNITS)
+    show(edit)
     assert edit.pose is None
     assert edit._gizmo.position.tolist() == list(POSE[:3])
-    assert edit._numbers[0].value == '0.1235'
+    assert texts(edit)[0] == '0.1235'
 
 
 def test_only_frames_that_can_be_placed_are_edited(written):
     _, edit = written
     for name, is_possible in (('free', True), ('fixed', False), ('free', True)):
-        begin(edit, edited(name))
+        show(edit, name)
         assert edit._gizmo.visible is is_possible
         assert [number.disabled for number in edit._numbers] == [not is_possible] * 6
         assert ('class="errors_of_setting"' in edit.html) is not is_possible
-    edit.refresh(edited('free')[0], -1, -1, UNITS)
+    edit.refresh(ShownScene(SCENE, TfOptions()), -1, -1, UNITS)
     assert not edit._gizmo.visible
 
 
 def test_numbers_that_were_not_typed_stay_exact(written):
     poses, edit = written
     units = Units(MILLIMETRES, DEGREES)
-    begin(edit, edited('free'), units)
-    assert [number.value for number in edit._numbers] == [
-        '123.5', '0.0', '0.0', '0.00', '0.00', '7.07']
+    show(edit, units=units)
+    assert texts(edit) == ['123.5', '0.0', '0.0', '0.00', '0.00', '7.07']
     edit._numbers[1].value = '250'
     edit._numbers[3].value = '90'
-    edit.refresh(*edited('free'), units)
+    show(edit, units=units)
     edit.actions['write to file']()
     assert poses[0][:3] == pytest.approx((0.123456789, 0.25, 0.0), abs=1e-15)
     assert rpy_from_quaternion(poses[0][3:]) == pytest.approx((math.pi / 2, 0.0, 0.123456789))
@@ -112,11 +111,11 @@ def test_numbers_that_were_not_typed_stay_exact(written):
 
 def test_typed_digits_stay(written):
     _, edit = written
-    begin(edit, edited('free'))
+    show(edit)
     for typed in ('0.123456', '0.1234561', ' 6.1e-05', '-.25'):
         edit._numbers[0].value = typed
-        begin(edit, edited('free'))
-        assert edit._numbers[0].value == typed
+        show(edit)
+        assert texts(edit)[0] == typed
         assert edit.pose.x == pytest.approx(float(typed), abs=1e-12)
 
 
@@ -124,67 +123,66 @@ def test_typed_digits_stay(written):
     'typed', ['', '-', '1/2', '1,234.5', '-0,25', '1 2', '1_0', 'nan', '1e999'])
 def test_text_that_is_no_number_is_refused(written, typed):
     poses, edit = written
-    begin(edit, edited('free'))
+    show(edit)
     drag(edit, 1.0)
     edit._numbers[0].value = typed
     write = edit.actions['write to file']
-    edit.refresh(*edited('free'), UNITS)
-    assert edit.pose == Pose(z=1.0)
+    show(edit)
+    assert (texts(edit)[0], edit.pose, [*edit.actions]) == (typed, Pose(z=1.0), ['cancel'])
     assert 'class="errors"' in edit.html
-    assert [*edit.actions] == ['cancel']
     write()
     assert poses == []
     edit.actions['cancel']()
-    edit.refresh(*edited('free'), UNITS)
-    assert [edit._numbers[0].value, *edit.actions] == ['0.1235']
+    show(edit)
+    assert (texts(edit)[0], [*edit.actions]) == ('0.1235', [])
     assert 'class="errors"' not in edit.html
 
 
-def test_refused_text_stays_until_another_frame_is_selected(written):
+def test_refused_text_goes_when_another_frame_is_selected(written):
     _, edit = written
-    begin(edit, edited('free'))
+    show(edit)
     edit._numbers[1].value = '-'
-    begin(edit, edited('free'))
-    assert edit._numbers[1].value == '-'
-    begin(edit, edited('l', pose=POSE))
-    assert edit._numbers[1].value == '0.0000'
+    show(edit)
+    show(edit, 'l')
+    assert texts(edit)[1] == '0.0000'
 
 
 def test_typed_numbers_in_another_unit_are_asked_about(written):
     _, edit = written
-    begin(edit, edited('free'))
+    show(edit)
     edit._numbers[5].value = '90'
-    begin(edit, edited('free'))
+    show(edit)
     assert 'the angles 0 0 90 are radians; did you mean degrees?' in edit.html
 
 
 def test_numbers_are_relative_to_the_reference(written):
     _, edit = written
-    begin(edit, edited('free', 1.0))
-    assert edit._numbers[0].value == '-0.8765'
+    show(edit, x=1.0)
+    assert texts(edit)[0] == '-0.8765'
     edit._numbers[0].value = '-1'
-    edit.refresh(*edited('free', 1.0), UNITS)
+    show(edit, x=1.0)
     assert edit.pose[:3] == pytest.approx((0.0, 0.0, 0.0))
 
 
-def test_new_pose_stays_while_the_frame_does_not_move(written):
+@pytest.mark.parametrize(('name', 'options', 'stays'), [
+    ('free', {'scene': load_text(TEXT, 'm.sdf')}, True), ('free', {'pose': Pose()}, False),
+    ('free', {'x': 1.0, 'units': Units(angle=DEGREES)}, True), ('l', {}, False)])
+def test_new_pose_stays_while_its_frame_is_selected_and_does_not_move(
+        written, name, options, stays):
     _, edit = written
-    begin(edit, edited('free'))
+    show(edit)
     drag(edit, 1.0)
-    edit.refresh(*edited('free', scene=load_text(TEXT, 'm.sdf')), UNITS)
-    assert edit.pose == Pose(z=1.0)
-    edit.refresh(*edited('free', pose=Pose()), UNITS)
-    assert edit.pose is None
+    show(edit, name, **options)
+    assert edit.pose == (Pose(z=1.0) if stays else None)
+    assert ('class="difference"' in edit.html) is stays
 
 
 def test_scene_with_a_new_pose_is_found_until_it_is_cancelled(written):
     poses, edit = written
-    begin(edit, edited('free'))
+    show(edit)
     assert edit.scene_ahead is None
     drag(edit, 1.0)
-    assert edit.look_ahead()
     assert not edit.look_ahead()
-    drag(edit, 2.0)
     assert (edit.scene_ahead, poses) == (SCENE, [])
     edit.actions['cancel']()
     assert edit.scene_ahead is None
@@ -192,9 +190,8 @@ def test_scene_with_a_new_pose_is_found_until_it_is_cancelled(written):
 
 def test_pose_that_cannot_be_written_is_an_error_before_it_is(written):
     poses, edit = written
-    begin(edit, edited('free'))
+    show(edit)
     drag(edit, 9.0)
-    edit.look_ahead()
     assert edit.scene_ahead is None
     assert 'class="errors"' in edit.html
     edit.actions['write to file']()
@@ -203,39 +200,20 @@ def test_pose_that_cannot_be_written_is_an_error_before_it_is(written):
 
 def test_what_is_written_is_shown_until_the_file_is_read(written):
     poses, edit = written
-    begin(edit, edited('free'))
-    drag(edit, 1.0)
-    edit.actions['write to file']()
-    edit.refresh(*edited('free'), UNITS)
-    assert (poses, edit.pose) == ([Pose(z=1.0)], Pose(z=1.0))
-    assert 'class="difference"' not in edit.html
-    edit.refresh(*edited('free', scene=load_text(TEXT, 'm.sdf')), UNITS)
-    assert edit.pose is None
-
-
-def test_new_pose_stays_for_the_same_frame_only(written):
-    _, edit = written
-    begin(edit, edited('free'))
-    drag(edit, 1.0)
-    edit.refresh(*edited('free', 1.0), Units(angle=DEGREES))
-    assert edit.pose == Pose(z=1.0)
-    assert 'class="difference"' in edit.html
-    edit.refresh(*edited('l'), UNITS)
-    assert edit.pose is None
-    assert 'class="difference"' not in edit.html
-
-
-def test_only_buttons_that_can_be_used_have_labels(written):
-    _, edit = written
 
     def labels():
         return re.findall('<label[^>]*>(.*?)</label>', edit.html)
-    begin(edit, edited('free'))
+    show(edit)
     assert labels() == []
     drag(edit, 1.0)
     assert labels() == [*edit.actions] == ['write to file', 'cancel']
     edit.actions['write to file']()
-    assert labels() == ['undo the last write']
+    show(edit)
+    assert (poses, edit.pose, labels()) == (
+        [Pose(z=1.0)], Pose(z=1.0), ['undo the last write'])
     assert 'written to m.sdf:1<' in edit.html
+    assert 'class="difference"' not in edit.html
+    show(edit, scene=load_text(TEXT, 'm.sdf'))
+    assert edit.pose is None
     edit.actions['undo the last write']()
     assert 'written to' not in edit.html
