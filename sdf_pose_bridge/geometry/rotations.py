@@ -136,8 +136,10 @@ def quaternion_from_rpy(xp: Any, *rpy: Component) -> Any:
     :param values: roll, pitch, yaw in radians, of any size.
     :return: x, y, z, w.
     """
-    (sin_r, cos_r), (sin_p, cos_p), (sin_y, cos_y) = _sines_and_cosines(
-        xp, [0.5 * angle for angle in rpy])
+    (sin_r, cos_r), (sin_p, cos_p), (sin_y, cos_y) = (
+        (xp.sin(0.5 * angle), xp.cos(0.5 * angle)) for angle in rpy)
+    # Sines of angles that are not finite are not numbers.
+    check(xp, xp.isfinite(sin_r + sin_p + sin_y))
     cos_cos = cos_p * cos_y
     sin_sin = sin_p * sin_y
     cos_sin = cos_p * sin_y
@@ -238,42 +240,6 @@ def quaternion_from_matrix(xp: Any, *matrix: Sequence[Component]) -> Any:
     return canonical_quaternion.formula(xp, *quat)
 
 
-@conversion(_RPY, _MATRIX)
-def matrix_from_rpy(xp: Any, *rpy: Component) -> Any:
-    """
-    Convert roll, pitch, yaw to a rotation matrix.
-
-    :param values: roll, pitch, yaw in radians, of any size.
-    :return: the three rows.
-    """
-    # The elements at gimbal lock are exact, unlike those computed from the quaternion.
-    (sin_r, cos_r), (sin_p, cos_p), (sin_y, cos_y) = _sines_and_cosines(xp, rpy)
-    # Adding zero makes -0.0 positive.
-    return (
-        (
-            cos_y * cos_p + 0.0,
-            cos_y * sin_p * sin_r - sin_y * cos_r + 0.0,
-            cos_y * sin_p * cos_r + sin_y * sin_r + 0.0,
-        ),
-        (
-            sin_y * cos_p + 0.0,
-            sin_y * sin_p * sin_r + cos_y * cos_r + 0.0,
-            sin_y * sin_p * cos_r - cos_y * sin_r + 0.0,
-        ),
-        (0.0 - sin_p, cos_p * sin_r + 0.0, cos_p * cos_r + 0.0))
-
-
-@conversion(_MATRIX, _RPY)
-def rpy_from_matrix(xp: Any, *matrix: Sequence[Component]) -> Any:
-    """
-    Convert a rotation matrix to roll, pitch, yaw.
-
-    :param values: the three rows.
-    :return: roll, pitch, yaw in radians.
-    """
-    return rpy_from_quaternion.formula(xp, *quaternion_from_matrix.formula(xp, *matrix))
-
-
 @conversion(_ROTATION_VECTOR, _QUATERNION)
 def quaternion_from_rotation_vector(xp: Any, *vector: Component) -> Any:
     """
@@ -325,11 +291,3 @@ def near_gimbal_lock(quat_xyzw: One | Many) -> bool | NDArray[np.bool_]:
     unit = canonical_quaternion(quat_xyzw)
     x, y, z, w = unit if isinstance(unit, tuple) else np.moveaxis(unit, -1, 0)
     return abs(abs(2.0 * (w * y - x * z)) - 1.0) < LOCK_TOLERANCE
-
-
-def _sines_and_cosines(xp: Any, rpy: Sequence[Component]) -> Any:
-    """Return sine and cosine of roll, pitch and yaw."""
-    roll, pitch, yaw = ((xp.sin(angle), xp.cos(angle)) for angle in rpy)
-    # Sines of angles that are not finite are not numbers.
-    check(xp, xp.isfinite(roll[0] + pitch[0] + yaw[0]))
-    return roll, pitch, yaw
