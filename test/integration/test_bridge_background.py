@@ -13,7 +13,6 @@ from changes import (
     last_x,
     listen_to_tf,
     Monitor,
-    reload,
     set_parameters,
     wait_for_x,
     world,
@@ -40,14 +39,6 @@ def listener_to_tf(bridge, start_listener):
     return listener
 
 
-@pytest.fixture(name='slow_again')
-def published_file_that_is_slow(listener, file):
-    set_parameters(listener, watch=False)
-    slow = SlowFile(file, world(1))
-    slow.hold()
-    return slow
-
-
 def assert_services_answer(listener):
     answer = listener.call(
         ConvertRotation, f'{BRIDGE}/convert_rotation', ConvertRotation.Request())
@@ -60,26 +51,17 @@ def assert_services_answer(listener):
     assert value.string_value == 'world'
 
 
-def test_services_answer_while_a_parameter_has_a_file_read(slow, listener):
+def test_services_answer_and_diagnostics_go_on_while_a_parameter_has_a_file_read(slow, listener):
+    monitor = Monitor(listener)
     setting = asked_to_set(listener, sdf_file=str(slow.path))
     with slow.opened():
         assert_services_answer(listener)
+        assert monitor.wait_for_more().level == DiagnosticStatus.OK
         assert not setting.done()
         assert last_x(listener) == 1.0
         slow.write(world(2))
     (result,) = listener.response(setting).results
     assert result.successful, result.reason
-    wait_for_x(listener, 2.0)
-
-
-def test_services_answer_while_a_file_is_read_again(slow_again, listener):
-    reloading = asked_to_reload(listener)
-    with slow_again.opened():
-        assert_services_answer(listener)
-        assert not reloading.done()
-        slow_again.write(world(2))
-    answer = listener.response(reloading)
-    assert answer.success, answer.message
     wait_for_x(listener, 2.0)
 
 
@@ -91,15 +73,18 @@ def test_services_answer_while_a_changed_file_is_read(file, slow, listener):
     wait_for_x(listener, 2.0)
 
 
-def test_what_is_asked_for_during_a_reload_comes_after_it(slow_again, listener, tmp_path):
+def test_what_is_asked_for_during_a_reload_comes_after_it(file, listener, tmp_path):
     other = tmp_path / 'other.sdf'
     other.write_text(world(5), encoding='utf-8')
+    set_parameters(listener, watch=False)
+    slow = SlowFile(file, world(1))
+    slow.hold()
     reloading = asked_to_reload(listener)
-    with slow_again.opened():
+    with slow.opened():
         setting = asked_to_set(listener, sdf_file=str(other))
         assert_services_answer(listener)
         assert not setting.done()
-        slow_again.write(world(2))
+        slow.write(world(2))
     assert listener.response(reloading).success
     assert listener.response(setting).results[0].successful
     wait_for_x(listener, 5.0)
@@ -108,26 +93,6 @@ def test_what_is_asked_for_during_a_reload_comes_after_it(slow_again, listener, 
     assert 2.0 in {
         each.transform.translation.x for message in listener.tf_messages
         for each in message.transforms}
-
-
-def test_what_arrives_bad_after_a_while_is_refused(slow, listener):
-    setting = asked_to_set(listener, sdf_file=str(slow.path))
-    with slow.opened():
-        slow.write('not XML')
-    (result,) = listener.response(setting).results
-    assert not result.successful
-    assert f'{slow.path}:1: FILE_READ' in result.reason
-    assert reload(listener).success
-    assert last_x(listener) == 1.0
-
-
-def test_diagnostics_go_on_while_a_file_is_read(slow, listener):
-    monitor = Monitor(listener)
-    setting = asked_to_set(listener, sdf_file=str(slow.path))
-    with slow.opened():
-        assert monitor.wait_for_more().level == DiagnosticStatus.OK
-        slow.write(world(2))
-    assert listener.response(setting).results[0].successful
 
 
 def test_an_empty_list_of_another_type_is_taken_for_a_list_of_strings(listener):

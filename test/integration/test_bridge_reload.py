@@ -2,15 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a running bridge notices, what it replaces, and what it keeps when something is wrong."""
 
-import signal
-
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from bridge_process import STARTED
 from changes import (
-    asked_to_set,
     BRIDGE,
     listen_to_tf,
     Monitor,
@@ -25,7 +22,6 @@ from geometry_msgs.msg import PoseStamped, TransformStamped
 from listener import latched
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters, SetParametersAtomically
-from slow_file import SlowFile
 
 INCLUDING = """<sdf version="1.10"><world name="w">
   <include><uri>model://box</uri></include>
@@ -206,16 +202,3 @@ def test_a_value_that_is_none_is_answered_and_the_node_lives_on(listener, servic
         assert not result.successful
         assert result.reason
     assert reload(listener).success
-
-
-@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_ends_it_well_while_it_reads_another_file(
-        start_bridge, start_listener, file, tmp_path, number):
-    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={file}').wait_until_started()
-    listener = start_listener()
-    slow = SlowFile(tmp_path / 'slow.sdf')
-    asked_to_set(listener, sdf_file=str(slow.path))
-    with slow.opened():
-        bridge.send(number)
-        assert bridge.wait_for_end() == 0, '\n'.join(bridge.lines)
-    assert not [line for line in bridge.lines if 'Traceback' in line or 'rror' in line]

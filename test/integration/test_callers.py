@@ -3,6 +3,7 @@
 """Callers that ask for anything, in any number, and leave when they like."""
 
 import array
+from importlib import import_module
 import math
 import sys
 import time
@@ -26,7 +27,6 @@ from changes import (
     Waiting,
     world,
 )
-from geometry_msgs.msg import Quaternion, Vector3
 from listener import Answer
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import (
@@ -54,53 +54,48 @@ NUMBERS = size(16_000, 1_000_000)
 # Messages hold UTF-8, which has no surrogates.
 TEXTS = st.text(st.characters(exclude_categories=['Cs']), max_size=20) | st.sampled_from(
     ['', 'world', 'crate', 'crate::body', 'crate/body', '::', '/', '*', '[', 'a\0b', 'x' * 10_000])
-NUMBERS_OF_ANY_KIND = st.floats() | st.sampled_from([0.0, 1.0, 1e308, math.pi / 2])
-FORMATS_OR_NOT = st.sampled_from([*POSE_FORMATS]) | TEXTS
+FORMATS = st.sampled_from([*POSE_FORMATS]) | TEXTS
 NAMES = st.sampled_from([*DECLARATIONS, 'use_sim_time', 'start_type_description_service']) | TEXTS
+VALUES = {
+    'boolean': st.booleans(), 'double': st.floats() | st.sampled_from([0.0, 1e308, math.pi / 2]),
+    'int64': st.integers(-2**63, 2**63 - 1), 'octet': st.binary(min_size=1, max_size=1),
+    'uint8': st.integers(0, 9) | st.integers(0, 255), 'uint64': st.integers(0, 2**64 - 1),
+}
+"""Strategies by the types of fields."""
+
+SERVICES = {
+    'convert_rotation': (ConvertRotation, TEXTS), 'convert_poses': (ConvertPoses, FORMATS),
+    'lookup_pose': (LookupPose, TEXTS), 'reload': (Trigger, TEXTS),
+    'set_parameters': (SetParameters, NAMES),
+    'set_parameters_atomically': (SetParametersAtomically, NAMES),
+    'get_parameters': (GetParameters, NAMES), 'get_parameter_types': (GetParameterTypes, NAMES),
+    'describe_parameters': (DescribeParameters, NAMES), 'list_parameters': (ListParameters, TEXTS),
+}
+"""Types of services, and what texts in requests are."""
 
 
-def filled(message_type, **fields):
-    """Return a strategy of messages, which are filled with what other strategies give."""
-    return st.fixed_dictionaries(fields).map(lambda values: message_type(**values))
+def values_of_type(name, texts):
+    """Return a strategy of values for fields of a type."""
+    if name.startswith('sequence<'):
+        item = name.removeprefix('sequence<').removesuffix('>')
+        return st.lists(values_of_type(item, texts), max_size=32 if item == 'double' else 3)
+    if '/' in name:
+        package, name = name.split('/')
+        return messages(getattr(import_module(f'{package}.msg'), name), texts)
+    return texts if name == 'string' else VALUES[name]
 
 
-VALUES = filled(
-    ParameterValue, type=st.integers(0, 255), bool_value=st.booleans(),
-    integer_value=st.integers(-2**63, 2**63 - 1), double_value=NUMBERS_OF_ANY_KIND,
-    string_value=TEXTS, string_array_value=st.lists(TEXTS, max_size=3),
-    bool_array_value=st.lists(st.booleans(), max_size=2),
-    double_array_value=st.lists(NUMBERS_OF_ANY_KIND, max_size=2),
-) | filled(
-    ParameterValue, type=st.just(ParameterType.PARAMETER_STRING), string_value=TEXTS
-) | filled(
-    ParameterValue, type=st.just(ParameterType.PARAMETER_STRING_ARRAY),
-    string_array_value=st.lists(TEXTS, max_size=3))
-PARAMETERS = st.lists(filled(Parameter, name=NAMES, value=VALUES), max_size=3)
+def messages(message_type, texts):
+    """Return a strategy of messages, with any values in all fields."""
+    return st.fixed_dictionaries({
+        field: values_of_type(name, texts)
+        for field, name in message_type.get_fields_and_field_types().items()
+    }).map(lambda values: message_type(**values))
 
-REQUESTS = st.one_of(*(st.tuples(*map(st.just, names), requests) for *names, requests in (
-    (ConvertRotation, 'convert_rotation', filled(
-        ConvertRotation.Request, given=st.integers(0, 255) | st.integers(0, 1),
-        rpy=filled(Vector3, **dict.fromkeys('xyz', NUMBERS_OF_ANY_KIND)),
-        quaternion=filled(Quaternion, **dict.fromkeys('xyzw', NUMBERS_OF_ANY_KIND)),
-        degrees=st.booleans())),
-    (ConvertPoses, 'convert_poses', filled(
-        ConvertPoses.Request, from_format=FORMATS_OR_NOT, to_format=FORMATS_OR_NOT,
-        values=st.lists(NUMBERS_OF_ANY_KIND, max_size=32).map(lambda row: array.array('d', row)))),
-    (LookupPose, 'lookup_pose', filled(LookupPose.Request, frame=TEXTS, relative_to=TEXTS)),
-    (Trigger, 'reload', st.just(Trigger.Request())),
-    (SetParameters, 'set_parameters', filled(SetParameters.Request, parameters=PARAMETERS)),
-    (SetParametersAtomically, 'set_parameters_atomically', filled(
-        SetParametersAtomically.Request, parameters=PARAMETERS)),
-    (GetParameters, 'get_parameters', filled(
-        GetParameters.Request, names=st.lists(NAMES, max_size=3))),
-    (GetParameterTypes, 'get_parameter_types', filled(
-        GetParameterTypes.Request, names=st.lists(NAMES, max_size=3))),
-    (DescribeParameters, 'describe_parameters', filled(
-        DescribeParameters.Request, names=st.lists(NAMES, max_size=3))),
-    (ListParameters, 'list_parameters', filled(
-        ListParameters.Request, prefixes=st.lists(TEXTS, max_size=3),
-        depth=st.integers(0, 2**64 - 1))),
-)))
+
+REQUESTS = st.one_of(*(
+    st.tuples(st.just(service_type), st.just(name), messages(service_type.Request, texts))
+    for name, (service_type, texts) in SERVICES.items()))
 
 LEAVING_CLIENT = f"""
 import rclpy

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Faults of disks, clocks and other processes; what was read before is served throughout."""
 
-import contextlib
 import os
 from pathlib import Path
 import resource
@@ -232,22 +231,13 @@ def test_a_reading_process_that_is_killed_is_an_error_and_replaced(start, tmp_pa
     wait_for_x(listener, 2.0)
 
 
-@pytest.mark.parametrize('is_reading', [False, True])
 def test_without_the_waiting_process_the_frames_stay_and_one_line_says_what_to_do(
-        start, tmp_path, listener, start_listener, is_reading):
-    slow = SlowFile(tmp_path / 'slow.sdf', world(1))
-    bridge = start(slow.path)
-    waiting = waiting_process(bridge)
-    if is_reading:
-        slow.hold()
-    else:
-        os.kill(waiting, signal.SIGKILL)
-    os.utime(slow.path)
-    with slow.opened() if is_reading else contextlib.nullcontext():
-        if is_reading:
-            os.kill(waiting, signal.SIGKILL)
-        assert_reported_while_old_poses_are_served(
-            bridge, listener, start_listener, slow.path, 'start this program again')
+        start, file, listener, start_listener):
+    bridge = start(file)
+    os.kill(waiting_process(bridge), signal.SIGKILL)
+    os.utime(file)
+    assert_reported_while_old_poses_are_served(
+        bridge, listener, start_listener, file, 'start this program again')
     assert 'start this program again' in reload(listener).message
     bridge.send(signal.SIGTERM)
     assert bridge.wait_for_end() == 0
@@ -291,21 +281,6 @@ def test_a_file_that_needs_too_much_keeps_nobody_waiting(
         bridge.end()
 
 
-def test_no_process_outlives_the_bridge(start, tmp_path):
-    slow = SlowFile(tmp_path / 'slow.sdf', world(1))
-    bridge = start(slow.path)
-    slow.hold()
-    os.utime(slow.path)
-    with slow.opened():
-        pids = waiting_process(bridge), busy_process(bridge)
-        descriptors = list(map(os.pidfd_open, pids))
-        bridge.send(signal.SIGKILL)
-        bridge.wait_for_end()
-    for descriptor in descriptors:
-        assert select.select([descriptor], [], [], SECONDS)[0]
-        os.close(descriptor)
-
-
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_to_all_processes_ends_them_well(ros_domain, tmp_path, number):
     slow = SlowFile(tmp_path / 'slow.sdf', world(1))
@@ -324,43 +299,14 @@ def test_a_signal_to_all_processes_ends_them_well(ros_domain, tmp_path, number):
     assert len(bridge.lines) == 1, bridge.lines
 
 
-def test_what_is_read_by_each_way_of_starting(start_bridge, ros_domain, file, start_listener):
-    from ament_index_python.packages import get_package_prefix
-    executable = Path(get_package_prefix('sdf_pose_bridge'), 'lib/sdf_pose_bridge/bridge')
-    parameters = ['--ros-args', '-p', f'sdf_file:={file}']
-    code = 'import sys; from sdf_pose_bridge.ros.bridge import main; sys.exit(main())'
-    for command in ([executable], [sys.executable, executable], [sys.executable, '-c', code]):
-        process = LoggedProcess([*command, *parameters])
-        process.wait_for_line(STARTED)
-        assert reload(start_listener()).success
-        process.send(signal.SIGTERM)
-        assert process.wait_for_end() == 0
-        process.end()
-
-
-def test_a_file_that_a_full_disk_cuts_off_is_reported(
-        bridge, small_disk, listener, start_listener):
-    path = small_disk / 'cell.sdf'
-    path.write_text(world(1), encoding='utf-8')
-    set_parameters(listener, sdf_file=str(path))
-    wait_for_x(listener, 1.0)
-    with pytest.raises(OSError, match='No space'):
-        path.write_text(world(2).replace('</world>', ' ' * 8192), encoding='utf-8')
-    assert_reported_while_old_poses_are_served(
-        bridge, listener, start_listener, path, f'{path}:')
-    path.write_text(world(3), encoding='utf-8')
-    wait_for_x(listener, 3.0)
-
-
 def test_a_full_disk_for_the_log_and_a_full_terminal_end_nothing(
         start, file, small_disk, listener, monkeypatch):
     monkeypatch.setenv('ROS_LOG_DIR', str(small_disk))
     (small_disk / 'filling').write_bytes(bytes(4096))
     with Path('/dev/full').open('w') as full:
-        from ament_index_python.packages import get_package_prefix
-        executable = Path(get_package_prefix('sdf_pose_bridge'), 'lib/sdf_pose_bridge/bridge')
         process = subprocess.Popen(
-            [executable, '--ros-args', '-p', f'sdf_file:={file}'], stdout=full, stderr=full)
+            [executable_of_workspace('bridge'), '--ros-args', '-p', f'sdf_file:={file}'],
+            stdout=full, stderr=full)
     try:
         wait_for_x(listener, 1.0)
         replace(file, '<sdf')

@@ -13,10 +13,11 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from ament_index_python.packages import get_package_prefix, get_package_share_directory
+from ament_index_python.packages import get_package_share_directory
 import bridge_process
 from bridge_process import LoggedProcess, STARTED
 from changes import replace, world
+from command_line import executable_of_workspace
 from sizes import size
 
 from sdf_pose_bridge.ros.middleware import FAST_DDS_3, PROFILES
@@ -136,8 +137,8 @@ def start_on(hosts, monkeypatch):
 @pytest.fixture
 def start_bridge_on(start_on, file):
     def start(host):
-        executable = Path(get_package_prefix('sdf_pose_bridge'), 'lib/sdf_pose_bridge/bridge')
-        bridge = start_on(host, executable, '--ros-args', '-p', f'sdf_file:={file}')
+        bridge = start_on(
+            host, executable_of_workspace('bridge'), '--ros-args', '-p', f'sdf_file:={file}')
         bridge.wait_for_line(STARTED)
         return bridge
     return start
