@@ -59,9 +59,12 @@ NAMES = st.sampled_from([*DECLARATIONS, 'use_sim_time', 'start_type_description_
 VALUES = {
     'boolean': st.booleans(), 'double': st.floats() | st.sampled_from([0.0, 1e308, math.pi / 2]),
     'int64': st.integers(-2**63, 2**63 - 1), 'octet': st.binary(min_size=1, max_size=1),
-    'uint8': st.integers(0, 9) | st.integers(0, 255), 'uint64': st.integers(0, 2**64 - 1),
+    'uint8': st.sampled_from([
+        0, 1, ParameterType.PARAMETER_STRING, ParameterType.PARAMETER_STRING_ARRAY])
+    | st.integers(0, 255),
+    'uint64': st.integers(0, 2**64 - 1),
 }
-"""Strategies by the types of fields."""
+"""Strategies by the types of fields; integers of 8 bits name the field that has the value."""
 
 SERVICES = {
     'convert_rotation': (ConvertRotation, TEXTS), 'convert_poses': (ConvertPoses, FORMATS),
