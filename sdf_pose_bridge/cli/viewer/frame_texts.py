@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator, Sequence
+from collections.abc import Container, Iterable, Sequence
 import html
 from pathlib import Path
 import shlex
@@ -20,6 +20,14 @@ from sdf_pose_bridge.geometry.units import POSE_LABELS, Units
 from sdf_pose_bridge.names import is_name_of_proxy, printable, quoted_names, SEPARATOR
 from sdf_pose_bridge.scene.pose_setting import place_of_pose
 from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT
+
+MOST_ROWS = 300
+"""Largest number of rows of the tree of frames in the page; a search finds the others."""
+
+_SIGNS = {'model': '\u25a2', 'link': '\u25cf', 'sensor': '\u25c6'}
+"""The signs of the kinds of frames; other frames have a cross."""
+_EYES, _FOLDS = ('\u25c9', '\u25cb'), ('\u25be', '\u25b8')
+"""The signs of a frame that is shown or hidden, and of one that is open or folded."""
 
 
 def escaped(text: str) -> str:
@@ -161,28 +169,40 @@ def html_of_reasons(lines: Sequence[str]) -> str:
             f'</summary>{html_of_lines("others", lines[1:])}</details>')
 
 
-def rows_of_tree(
-    shown: ShownScene, search: str, folded: Container[str] = (),
-) -> Iterator[tuple[int, int, str, bool]]:
+def html_of_tree(
+    shown: ShownScene, search: str, selected: str, folded: Container[str], hidden: Container[str],
+) -> str:
     """
     List frames, each below its parent in TF, but not those that only a merge has named.
 
     :param search: a part of the ids of the frames to list; empty for all of them.
+    :param selected: the id of the selected frame.
     :param folded: the ids of frames whose children are not listed, unless they are searched.
-    :return: the index, the depth in the tree and the text of each, and whether it has children.
+    :param hidden: the ids of frames that are hidden.
     """
-    tree, children = shown.tree, dict[int, list[int]]()
-    for index, parent in enumerate(tree.parents.tolist()):
+    ids, children = shown.tree.frame_ids, dict[int, list[int]]()
+    for index, parent in enumerate(shown.tree.parents.tolist()):
         children.setdefault(parent, []).append(index)
     waiting = [(index, 0) for other in (NO_PARENT, ROOT_IS_PARENT)
                for index in reversed(children.get(other, ()))]
-    while waiting:
+    rows: list[str] = []
+    while waiting and len(rows) < MOST_ROWS:
         index, depth = waiting.pop()
-        frame_id, below = tree.frame_ids[index], children.get(index, ())
-        if not is_name_of_proxy(frame_id.rpartition('/')[2]):
-            if not search:
-                yield index, min(depth, 20), shown.short_names[index], bool(below)
-            elif search.lower() in frame_id.lower():
-                yield index, 0, frame_id, False
+        frame_id, kind, below = ids[index], shown.labels[index], children.get(index, ())
+        if search.lower() in frame_id.lower() and not is_name_of_proxy(
+                frame_id.rpartition('/')[2]):
+            text = frame_id if search else shown.short_names[index]
+            rows.append(
+                f'<div style="padding-left:{0 if search else min(depth, 20)}em">'
+                f'<i data-ask="fold {index}">'
+                f'{_FOLDS[frame_id in folded] if below and not search else ""}</i>'
+                f'<b title="{kind}">{_SIGNS.get(kind, "+")}</b>'
+                f'<label data-ask="select {index}"'
+                f'{" class=selected" if frame_id == selected else ""}>{escaped(text)}</label>'
+                f'<i data-ask="hide {index}" title="show or hide">{_EYES[frame_id in hidden]}</i>'
+                '</div>')
         if search or frame_id not in folded:
             waiting += [(child, depth + 1) for child in reversed(below)]
+    if not search and len(rows) < len(ids):
+        rows.append(f'{len(ids) - len(rows)} more, to be found by the search')
+    return f'<div class="rows">{"".join(rows)}</div>'

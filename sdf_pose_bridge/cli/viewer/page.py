@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import partial
-from itertools import cycle, islice
+from itertools import cycle
 from pathlib import Path
 import threading
 
@@ -15,13 +15,12 @@ import viser
 from sdf_pose_bridge import Scene
 from sdf_pose_bridge.cli.viewer.drawing import Drawing, GROUPS, HIDDEN_AT_FIRST, VisiblePart
 from sdf_pose_bridge.cli.viewer.frame_texts import (
-    escaped,
     html_of_data,
     html_of_frame,
     html_of_lines,
     html_of_reasons,
     html_of_selection,
-    rows_of_tree,
+    html_of_tree,
 )
 from sdf_pose_bridge.cli.viewer.joint_sliders import JointSliders
 from sdf_pose_bridge.cli.viewer.meshes import ALLOWANCE, MeshReader
@@ -41,17 +40,10 @@ from sdf_pose_bridge.tf.tree import TfOptions
 
 _ANGLES = {unit.name: unit for unit in (RADIANS, DEGREES)}
 
-MOST_ROWS = 300
-"""Largest number of rows of the tree of frames in the page; a search finds the others."""
-
 _MOST_CHOICES = 1000
 _PANEL_WIDTH, _PANEL_PART, _LEAST_WIDTH = 360, 0.35, 720
 """The largest width of the panel in pixels and as a part of a window, and the least width of a
 window in which it is open at first."""
-_SIGNS = {'model': '\u25a2', 'link': '\u25cf', 'sensor': '\u25c6'}
-"""The signs of the kinds of frames; other frames have a cross."""
-_EYES, _FOLDS = ('\u25c9', '\u25cb'), ('\u25be', '\u25b8')
-"""The signs of a frame that is shown or hidden, and of one that is open or folded."""
 
 
 class SelectedFrame:
@@ -102,24 +94,12 @@ class SelectedFrame:
 
     def list_frames(self, shown: ShownScene) -> None:
         """List the frames of a scene; the selected one stays."""
-        tree, kinds = shown.tree, shown.labels
-        self._ids = ids = tree.frame_ids
-        choices = (tree.root_frame, *ids[:_MOST_CHOICES])
+        self._ids = shown.tree.frame_ids
+        choices = (shown.tree.root_frame, *self._ids[:_MOST_CHOICES])
         if choices != self._choice.options:
             self._choice.options = choices
-        rows = list(islice(rows_of_tree(shown, self._search.value, self._folded), MOST_ROWS))
-        content = ''.join(
-            f'<div style="padding-left:{depth}em"><i data-ask="fold {frame}">'
-            f'{_FOLDS[ids[frame] in self._folded] if has_children else ""}</i>'
-            f'<b title="{kinds[frame]}">{_SIGNS.get(kinds[frame], "+")}</b>'
-            f'<label data-ask="select {frame}"'
-            f'{" class=selected" if ids[frame] == self._frame_id else ""}>{escaped(text)}</label>'
-            f'<i data-ask="hide {frame}" title="show or hide">{_EYES[ids[frame] in self.hidden]}'
-            '</i></div>'
-            for frame, depth, text, has_children in rows)
-        if not self._search.value and len(rows) < len(ids):
-            content += f'{len(ids) - len(rows)} more, to be found by the search'
-        self._rows.content = f'<div class="rows">{content}</div>'
+        self._rows.content = html_of_tree(
+            shown, self._search.value, self._frame_id, self._folded, self.hidden)
 
     def describe(self, html: str) -> None:
         """Show the description of the selected frame; empty for none."""

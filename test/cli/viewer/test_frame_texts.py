@@ -9,12 +9,13 @@ import shlex
 
 import pytest
 
+from sdf_pose_bridge.cli.viewer import frame_texts
 from sdf_pose_bridge.cli.viewer.frame_texts import (
     html_of_difference,
     html_of_frame,
     html_of_reasons,
     html_of_selection,
-    rows_of_tree,
+    html_of_tree,
 )
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.geometry.poses import Pose
@@ -135,15 +136,21 @@ def test_name_is_text(scene):
     assert html.escape(HOSTILE) in text
 
 
+def rows(shown, search='', *, folded=()):
+    """Return the depth, the sign of folding and the text of each row."""
+    text = html_of_tree(shown, search, '', folded, ())
+    return re.findall('padding-left:(.*?)em.*?fold.*?>(.*?)</i>.*?<label.*?>(.*?)</label>', text)
+
+
 def test_rows_stand_below_their_parents(scene):
-    rows = [row[1:3] for row in rows_of_tree(ShownScene(scene, TfOptions()), '')]
-    assert rows == [
-        (0, 'l'), (1, 'm'), (1, 's'), (2, 's_optical'), (1, 'f'), (0, HOSTILE)]
+    assert rows(ShownScene(scene, TfOptions())) == [
+        ('0', '▾', 'l'), ('1', '', 'm'), ('1', '▾', 's'), ('2', '', 's_optical'), ('1', '', 'f'),
+        ('0', '', html.escape(HOSTILE))]
 
 
 def test_children_of_a_folded_frame_are_not_listed(scene):
-    rows = [row[2:] for row in rows_of_tree(ShownScene(scene, TfOptions()), '', {'m/l/s'})]
-    assert rows == [('l', True), ('m', False), ('s', True), ('f', False), (HOSTILE, False)]
+    found = rows(ShownScene(scene, TfOptions()), folded={'m/l/s'})
+    assert [row[1:] for row in found[:4]] == [('▾', 'l'), ('', 'm'), ('▸', 's'), ('', 'f')]
 
 
 def test_frame_that_only_a_merge_has_named_is_not_listed():
@@ -152,10 +159,15 @@ def test_frame_that_only_a_merge_has_named_is_not_listed():
     shown = ShownScene(load_text(
         f'<sdf version="1.11"><world name="w">{frames}</world></sdf>'.encode(), 'cell.sdf'),
         TfOptions())
-    assert [text for _, _, text, _ in rows_of_tree(shown, '')] == ['_merged__a', 'b']
+    assert [row[2] for row in rows(shown)] == ['_merged__a', 'b']
 
 
 def test_search(scene):
-    shown = ShownScene(scene, TfOptions())
-    assert [text for _, _, text, _ in rows_of_tree(shown, 'M/L/', {'m/l'})] == [
-        'm/l/s', 'm/l/s_optical']
+    found = rows(ShownScene(scene, TfOptions()), 'M/L/', folded={'m/l'})
+    assert found == [('0', '', 'm/l/s'), ('0', '', 'm/l/s_optical')]
+
+
+def test_more_frames_than_rows(scene, monkeypatch):
+    monkeypatch.setattr(frame_texts, 'MOST_ROWS', 4)
+    text = html_of_tree(ShownScene(scene, TfOptions()), '', '', (), ())
+    assert '2 more, to be found by the search' in text

@@ -12,7 +12,6 @@ import pytest
 pytest.importorskip('viser', reason='needs viser')
 
 from sdf_pose_bridge import load
-from sdf_pose_bridge.cli.viewer import page as page_module
 from sdf_pose_bridge.cli.viewer.page import Page, Pages, SelectedFrame
 from sdf_pose_bridge.cli.viewer.server import Events
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
@@ -185,9 +184,3 @@ def test_selected_frame_stays_where_others_are_listed(selected):
     assert selected.frame == 0
     selected.list_frames(shown_scene('a'))
     assert selected.frame == -1
-
-
-def test_more_frames_than_rows(selected, monkeypatch):
-    monkeypatch.setattr(page_module, 'MOST_ROWS', 4)
-    selected.list_frames(shown_scene(*'abcdef'))
-    assert '2 more, to be found by the search' in selected._rows.content
