@@ -32,7 +32,7 @@ from sdf_pose_bridge.cli.viewer.view_point import (
 )
 from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.geometry.units import Unit
-from sdf_pose_bridge.names import printable, SEPARATOR, shortened
+from sdf_pose_bridge.names import printable, shortened
 from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
 
@@ -86,9 +86,12 @@ class VisiblePart:
         """Lines that say which visuals and collisions cannot be drawn."""
         self.names = json.dumps({
             'frames': [printable(ids[frame]) for frame in self.frames],
-            'bodies': [_names_of_bodies(shown, surface) for surface in self.surfaces]})
+            'bodies': [
+                [printable(f'{shown.ids[tree.nearest_frames[element]]}, {surface.kind.label} '
+                           f'{scene.own_name(element)}') for element in surface.elements]
+                for surface in self.surfaces]})
         """The names that the page shows at the pointer: those of all axes, and of the copies of
-        each surface, in the order of the nodes."""
+        each surface, in the order of the nodes; of a copy its frame, and the body in it."""
         self._bodies = np.array(
             [element for surface in self.surfaces for element in surface.elements], int)
         boxes = boxes_of_surfaces(scene, self.surfaces)
@@ -186,7 +189,8 @@ class Drawing:
         missing = (element for surface in visible.surfaces if surface.reason
                    for element in surface.elements)
         labels = [
-            (f'{_last_part(scene.shapes[element].mesh_uri)}?', True, *scene.poses[element, :3])
+            (printable(shortened(scene.shapes[element].mesh_uri.rpartition('/')[2])) + '?', True,
+             *scene.poses[element, :3])
             for element in islice(missing, MOST_NAMES)]
         measured = np.zeros((0, 2, 3))
         if ROOT_IS_PARENT not in (reference, frame):
@@ -255,19 +259,6 @@ class Drawing:
 def _places(poses: Floats) -> tuple[Floats, Floats]:
     """Return quaternions w x y z and positions, as viser takes them, of poses (..., 7)."""
     return poses[..., _WXYZ], poses[..., :3]
-
-
-def _names_of_bodies(shown: ShownScene, surface: DrawnSurface) -> list[str]:
-    """Return the names of the copies of a surface: the frame of each, then the body in it."""
-    ids, names, frames = shown.ids, shown.scene.names, shown.tree.nearest_frames
-    return [
-        printable(f'{ids[frames[element]]}, {surface.kind.label} '
-                  f'{names[element].rpartition(SEPARATOR)[2]}')
-        for element in surface.elements]
-
-
-def _last_part(name: str) -> str:
-    return printable(shortened(name.rpartition('/')[2]))
 
 
 def _extent_m(*points: Floats) -> float:

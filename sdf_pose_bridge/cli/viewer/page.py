@@ -196,11 +196,7 @@ class Page:
         drawn, frame, reference, strip = shown, selected.frame, selected.reference, ''
         if edit is not None:
             edit.refresh(shown, frame, reference, units)
-            strip = edit.html
-            if edit.scene_ahead is not None:
-                drawn = shown.at(shown.positions, edit.scene_ahead)
-            if edit.pose is not None:
-                drawn = drawn.with_pose(frame, edit.pose)
+            strip, drawn = edit.html, edit.shown_ahead
         if frame >= 0:
             strip = html_of_selection(shown, drawn, frame, reference, units) + strip
         self._tell_script('labels', self._drawing.show(drawn, frame, reference, units.length))

@@ -98,10 +98,14 @@ class PoseEdit:
         return True
 
     @property
-    def scene_ahead(self) -> Scene | None:
-        """The scene with the changed pose, written or not; None if nothing is changed."""
-        is_known = self.pose and self._looked_at and not self._errors
-        return self._change.scene if self._change is not None and is_known else None
+    def shown_ahead(self) -> ShownScene:
+        """The scene with the new pose, written or not, and all that moves with it if known."""
+        if self.pose is None:
+            return self._shown
+        shown = self._shown
+        if self._change is not None and self._looked_at and not self._errors:
+            shown = shown.at(shown.positions, self._change.scene)
+        return shown.with_pose(self._frame, self.pose)
 
     @property
     def _is_new(self) -> bool:

@@ -177,22 +177,22 @@ def test_new_pose_stays_while_its_frame_is_selected_and_does_not_move(
     assert ('class="difference"' in edit.html) is stays
 
 
-def test_scene_with_a_new_pose_is_found_until_it_is_cancelled(written):
+def test_scene_with_a_new_pose_is_shown_until_it_is_cancelled(written):
     poses, edit = written
     show(edit)
-    assert edit.scene_ahead is None
+    assert edit.shown_ahead is edit._shown
     drag(edit, 1.0)
     assert not edit.look_ahead()
-    assert (edit.scene_ahead, poses) == (SCENE, [])
+    assert edit.shown_ahead.pose_of(edit._frame) == Pose(z=1.0)
+    assert poses == []
     edit.actions['cancel']()
-    assert edit.scene_ahead is None
+    assert edit.shown_ahead is edit._shown
 
 
 def test_pose_that_cannot_be_written_is_an_error_before_it_is(written):
     poses, edit = written
     show(edit)
     drag(edit, 9.0)
-    assert edit.scene_ahead is None
     assert 'class="errors"' in edit.html
     edit.actions['write to file']()
     assert poses == []
