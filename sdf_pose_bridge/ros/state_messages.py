@@ -247,13 +247,14 @@ class Effects:
         self._effects: dict[tuple[StateSource, tuple[object, ...]], Effect] = {}
         tree, motion = frames.tree, frames.frames.motion
         self._roots = ('', tree.root_frame, tree.world)
-        free_models = dict(enumerate(motion.free_models, len(motion.dofs)))
+        count, scoped_names = len(motion.dofs), frames.positions.free_models
         ids = dict(zip(tree.elements.tolist(), tree.frame_ids, strict=True))
         self.models = {
-            name: dof for dof, each in free_models.items()
-            for name in (each.name, each.scoped_name, ids.get(each.element, each.name))}
+            each: dof for dof, scoped_name in enumerate(scoped_names, count)
+            for name in [motion.names[dof]]
+            for each in (name, scoped_name, ids.get(motion.elements[dof], name))}
         """The degrees of freedom of free models, by their names and by their frame ids."""
-        self.only_model = next(iter(free_models)) if len(free_models) == 1 else None
+        self.only_model = count if len(scoped_names) == 1 else None
         """The degree of freedom of the only free model; None if there is not exactly one."""
         self.last: dict[StateSource, Effect] = {}
         """The effect of the last message on each topic of joint states, as far as it is kept."""

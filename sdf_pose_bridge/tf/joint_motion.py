@@ -67,15 +67,6 @@ class DegreeOfFreedom(NamedTuple):
         return bool(self.rad_per_unit and self.m_per_unit)
 
 
-class FreeModel(NamedTuple):
-    """A model that moves freely in the root; it counts as one degree of freedom."""
-
-    element: int
-    name: str
-    """Its name, made like those of joints."""
-    scoped_name: str
-
-
 def dofs_from_joint(joint: Joint, name: str = '') -> list[DegreeOfFreedom]:
     """
     List the degrees of freedom of a joint.
@@ -96,30 +87,26 @@ def dofs_from_joint(joint: Joint, name: str = '') -> list[DegreeOfFreedom]:
         for motion, axis, suffix in JOINT_TYPES[joint.type]]
 
 
-class Motions:
-    """
-    Products of a constant pose, the displacement by a degree of freedom, and a constant pose.
+class Motions(NamedTuple):
+    """Products of a constant pose, a displacement by a degree of freedom, and a constant pose."""
 
-    :param dofs: shape (k,), the degrees of freedom.
-    :param screws: the screw motions of joints; rows of free models are not used.
-    :param free_rows: shape (m,), the rows of free models. The constant pose before is the
-        identity there, since only the root is before them.
-    :param coordinates: shape (m, 7), the coordinates of these.
-    :param in_models: shape (m, 7), the constant pose after, in the model where the file puts it.
-    """
-
-    def __init__(
-        self, dofs: Indices, screws: ScrewMotions, free_rows: NDArray[np.intp],
-        coordinates: NDArray[np.intp], in_models: PoseArray,
-    ) -> None:
-        self._dofs, self._screws, self._free_rows = dofs, screws, free_rows
-        self._coordinates, self._in_models = coordinates, in_models
+    dofs: Indices
+    """Shape (k,), the degrees of freedom."""
+    screws: ScrewMotions
+    """The screw motions of joints; rows of free models are not used."""
+    free_rows: NDArray[np.intp]
+    """Shape (m,), the rows of free models. The constant pose before is the identity there, since
+    only the root is before them."""
+    coordinates: NDArray[np.intp]
+    """Shape (m, 7), the coordinates of these."""
+    in_models: PoseArray
+    """Shape (m, 7), the constant pose after, in the model where the file puts it."""
 
     def poses(self, values: Floats) -> PoseArray:
         """Return the products at coordinates; shapes (n,) and (k, 7)."""
-        poses = self._screws.poses(values[self._dofs])
-        if len(self._free_rows):
-            poses[self._free_rows] = pose_products(values[self._coordinates], self._in_models)
+        poses = self.screws.poses(values[self.dofs])
+        if len(self.free_rows):
+            poses[self.free_rows] = pose_products(values[self.coordinates], self.in_models)
         return poses
 
 
@@ -152,10 +139,11 @@ class JointMotion:
         root. The axis is reversed if the moved body is the parent of the joint."""
         models = list(tf_parents.free_models.values())
         names = FrameNaming(frame_names).frame_ids_from_scene(scene, np.array(models, np.int32))
-        self.free_models = tuple(
-            FreeModel(model, name, scene.names[model])
-            for model, name in zip(models, names, strict=True))
-        """The free models, each of which is one degree of freedom after those of joints."""
+        self.names = (*(each.name for each in dofs), *names)
+        """The name of each degree of freedom in messages: those of joints, then the models that
+        move freely in the root."""
+        self.elements = (*(each.joint.element for each in dofs), *models)
+        """The joint or the model of each."""
         bodies += tf_parents.free_models
         self.moved_bodies: Indices = np.array(bodies, np.int32)
         """The body that each degree of freedom moves: the one at the end of the joint, or the
@@ -173,7 +161,7 @@ class JointMotion:
             np.diff(self.moved_bodies, prepend=-1), last_of_elements[tf_parents.parents[bodies]],
             indices - 1)
         """For each degree of freedom the previous one on the path from the root; -1 for none."""
-        poses = scene.poses[[*(each.joint.element for each in dofs), *models]]
+        poses = scene.poses[list(self.elements)]
         values = np.zeros((len(bodies), 5))
         values[:len(dofs)] = np.reshape(
             [(*each.axis.xyz, each.rad_per_unit, each.m_per_unit) for each in dofs], (-1, 5))

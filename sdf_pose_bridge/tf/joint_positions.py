@@ -97,8 +97,10 @@ class JointPositions:
         unreported: UnreportedJoints = UnreportedJoints.NONE, *, is_spawned: bool = False,
     ) -> None:
         dofs = motion.dofs
-        self.names = (*(each.name for each in dofs), *(each.name for each in motion.free_models))
+        self.names = motion.names
         """The name of each degree of freedom."""
+        self.free_models = tuple(scene.names[each] for each in motion.elements[len(dofs):])
+        """The scoped names of the free models."""
         count = len(self.names)
         self._is_fixed = np.zeros(count, np.bool_)
         self._is_fixed[:len(dofs)] = [
@@ -114,10 +116,7 @@ class JointPositions:
         self.reported_count = 0
         """Number of degrees of freedom that :attr:`is_reported` has."""
         self._unreported = unreported
-        self._elements = [
-            *(each.joint.element for each in dofs),
-            *(each.element for each in motion.free_models)]
-        top_level_elements = list(map(scene.top_level_element, self._elements))
+        top_level_elements = list(map(scene.top_level_element, motion.elements))
         # The top-level models have numbers.
         elements, self._models = np.unique(top_level_elements, return_inverse=True)
         self._stamps_of_models_ns = [NEVER] * len(elements)
@@ -139,11 +138,6 @@ class JointPositions:
     def models(self) -> tuple[str, ...]:
         """The top-level models of a world that have such names; none in a model file."""
         return tuple(filter(None, self._indices))
-
-    @property
-    def free_models(self) -> tuple[str, ...]:
-        """The scoped names of the free models."""
-        return tuple(each.scoped_name for each in self._motion.free_models)
 
     @property
     def is_known(self) -> NDArray[np.bool_]:
@@ -180,7 +174,7 @@ class JointPositions:
             if self.is_model(dof):
                 models.append(self.names[dof])
             else:
-                joints.setdefault(self._elements[dof], self.names[dof])
+                joints.setdefault(self._motion.elements[dof], self.names[dof])
         return list(joints.values()), models
 
     def selection(self, names: Sequence[str], model: str = '') -> Selection:

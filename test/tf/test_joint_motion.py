@@ -289,10 +289,11 @@ def test_frames_move_with_their_models(drawn, data, use_joint_states):
     values = motion.initial_coordinates.copy()
     in_file = drawn.matrices()
     displacements = {-1: np.eye(4)}
-    for dof, model in enumerate(motion.free_models, len(motion.dofs)):
+    for dof in range(len(motion.dofs), len(motion.names)):
         pose = data.draw(model_poses())
         values[motion.coordinates(np.array([dof]))[0]] = pose
-        displacements[dof] = matrix_from_pose(pose) @ np.linalg.inv(in_file[model.scoped_name])
+        before = in_file[scene.names[motion.elements[dof]]]
+        displacements[dof] = matrix_from_pose(pose) @ np.linalg.inv(before)
 
     def displacement(element):
         dof = motion.last_dofs[element]
