@@ -4,6 +4,7 @@
 
 import os
 from pathlib import Path
+import re
 import resource
 import select
 import signal
@@ -194,26 +195,73 @@ def test_after_failing_allocations_the_bridge_answers_or_is_gone(
     bridge = LoggedProcess([
         sys.executable, '-c', FAILING, control, '--ros-args', '-p', f'sdf_file:={file}'])
 
-    def ask(name):
-        types = {'reload': Trigger, 'convert_rotation': ConvertRotation}
-        answer = listener.ask(types[name], f'{BRIDGE}/{name}', types[name].Request())
-        listener.wait(lambda: answer.done() or not bridge.is_running, lambda: f'{name} at {first}')
-
     try:
         wait_for_x(listener, 1.0)
         for name in ('reload', 'convert_rotation'):
-            ask(name)
+            assert_answers_or_is_gone(bridge, listener, name)
         control.write_text(f'{first} {first + 30}')
         for name in (service, 'reload', 'convert_rotation'):
-            if bridge.is_running:
-                ask(name)
-        if not bridge.is_running:
-            code = bridge.wait_for_end()
-            assert code
-            # Libraries may crash.
-            assert code < 0 or bridge.lines[-1].endswith('not enough memory, so the node ends')
+            assert_answers_or_is_gone(bridge, listener, name)
     finally:
         bridge.end()
+
+
+@pytest.mark.parametrize('megabytes', size((), range(1, 40, 3)))
+def test_beyond_a_limit_of_the_kernel_the_bridge_answers_or_is_gone(
+        start, file, listener, megabytes):
+    bridge = start(file)
+    replace(file, world(2, extra=''.join(
+        f'<model name="m{i}"><link name="l"/></model>' for i in range(20_000))))
+    used = int(re.search(r'VmData:\s*(\d+) kB', Path(f'/proc/{bridge.pid}/status').read_text())[1])
+    limit = used * 1024 + megabytes * 10**6
+    resource.prlimit(bridge.pid, resource.RLIMIT_DATA, (limit, limit))
+    for name in ('reload', 'convert_rotation', 'reload'):
+        assert_answers_or_is_gone(bridge, listener, name)
+
+
+def assert_answers_or_is_gone(bridge, listener, service):
+    if bridge.is_running:
+        types = {'reload': Trigger, 'convert_rotation': ConvertRotation}
+        answer = listener.ask(types[service], f'{BRIDGE}/{service}', types[service].Request())
+        listener.wait(
+            lambda: answer.done() or not bridge.is_running, lambda: '\n'.join(bridge.lines))
+    if not bridge.is_running:
+        code = bridge.wait_for_end()
+        assert code
+        # Libraries may crash.
+        assert code < 0 or bridge.lines[-1].endswith('not enough memory, so the node ends')
+
+
+UNABLE_TO_PUBLISH = """
+import sys
+from sdf_pose_bridge.ros.scene_reader import SceneReader
+reader = SceneReader()
+from sdf_pose_bridge.ros.process import run
+from sdf_pose_bridge.ros.published_frames import PublishedFrames
+
+def publish_topics(frames):
+    if frames.tree.transforms[-1, 0] == 2.0:
+        frames.publishers.opened(frames._topics[-1]).destroy()
+    publish(frames)
+
+publish, PublishedFrames.publish_topics = PublishedFrames.publish_topics, publish_topics
+sys.exit(run(sys.argv, 'bridge', reader))
+"""
+"""The node, of which one publisher does not work when the crate is at x = 2."""
+
+
+def test_a_publish_that_fails_after_the_swap_of_scenes_ends_the_bridge(
+        ros_domain, file, listener):
+    bridge = LoggedProcess([
+        sys.executable, '-c', UNABLE_TO_PUBLISH, '--ros-args', '-p', f'sdf_file:={file}'])
+    try:
+        wait_for_x(listener, 1.0)
+        replace(file, world(2))
+        assert bridge.wait_for_end() == 1
+    finally:
+        bridge.end()
+    assert 'sdf_pose_bridge: thread "loader" has failed, so the node ends' in bridge.lines
+    assert not [line for line in bridge.lines if 'is rejected' in line]
 
 
 # The process that reads files
