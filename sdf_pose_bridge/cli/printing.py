@@ -60,7 +60,9 @@ def print_problems(
         is_error = isinstance(problem, SdfError)
         kind = '' if is_error or problem.code == 'WARNING' else 'WARNING: '
         place, message = printable(str(problem.place)), printable(problem.message)
-        hint = '; --skip-missing leaves it out' if isinstance(problem, UriLookupError) else ''
+        hint = '; here -I adds to resource_paths' if 'resource_paths' in message else ''
+        if isinstance(problem, UriLookupError):
+            hint += '; --skip-missing leaves it out'
         code = _styled(f'{kind}{problem.code}:', _RED if is_error else _YELLOW, stream)
         print(f'{_styled(f"{place}:", _BOLD, stream)} {code} {message}{hint}{other_lines}',
               file=stream)

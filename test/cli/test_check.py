@@ -72,7 +72,8 @@ def test_includes_are_searched_in_given_directories(run_main, files):
                                      '</uri></include></world></sdf>')
     missing = run_main('check', 'world.sdf')
     assert missing.returncode == 1
-    assert missing.stdout.endswith('; --skip-missing leaves it out\n')
+    assert missing.stdout.endswith(
+        '; here -I adds to resource_paths; --skip-missing leaves it out\n')
     assert run_main('check', '-I', 'models', 'world.sdf').returncode == 0
     skipped = run_main('check', '--skip-missing', 'world.sdf')
     assert skipped.returncode == 0

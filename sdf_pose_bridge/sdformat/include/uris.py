@@ -179,11 +179,9 @@ class ResourceFinder(NamedTuple):
             reason = f'no package "{first}" is installed, and {reason}'
         elsewhere = _directory_near(including_file, first)
         if elsewhere:
-            return (f'{reason}, but in "{elsewhere}"; add that to resource_paths (-I on the '
-                    'command line)')
+            return f'{reason}, but in "{elsewhere}"; add that to resource_paths'
         hint = '' if rest else _hint_about_missing(first, directories)
-        return (f'{reason}; resource_paths (-I on the command line) and GZ_SIM_RESOURCE_PATH add '
-                f'directories{hint}')
+        return f'{reason}; resource_paths and GZ_SIM_RESOURCE_PATH add directories{hint}'
 
     def _deepest_folder(self, uri: str, including_file: str) -> tuple[str, str]:
         """

@@ -228,7 +228,7 @@ def test_reason_for_a_model_in_a_folder_beside_the_file_names_the_folder(tmp_pat
     write(tmp_path / 'models/arm', 'model.sdf')
     reason = resource_finder((), {}).reason_not_found(
         'model://arm', str(tmp_path / 'worlds/cell.sdf'))
-    assert f'but in "{tmp_path}/models"; add that to resource_paths (-I ' in reason
+    assert f'but in "{tmp_path}/models"; add that to resource_paths' in reason
 
 
 def test_reason_for_a_misspelt_file_has_the_nearest_name(tmp_path):
