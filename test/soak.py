@@ -20,7 +20,7 @@ import tempfile
 import time
 
 from bridge_process import BridgeProcess, SECONDS
-from changes import BRIDGE, last_x, listen_to_tf, replace, world
+from changes import BRIDGE, last_x, listen_to_tf, replace, usage_of, world
 from geometry_msgs.msg import PoseStamped, TransformStamped
 from listener import latched, Listener
 import numpy as np
@@ -76,14 +76,6 @@ def call(domain, last, results):
             time.sleep(PERIOD_S)
     results.put(('caller', count, x == last.value))
     listener.end()
-
-
-def usage_of(pid):
-    """Return resident memory in kB, number of threads and of descriptors of a process."""
-    process = Path('/proc', str(pid))
-    status = dict(line.split(':', 1) for line in (process / 'status').read_text().splitlines())
-    return (int(status['VmRSS'].split()[0]), int(status['Threads']),
-            len(list((process / 'fd').iterdir())))
 
 
 def rewrite(path, seconds, pid):

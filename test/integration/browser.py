@@ -8,6 +8,8 @@ import json
 import shutil
 import subprocess
 import time
+from urllib.parse import urlsplit
+from urllib.request import Request, urlopen
 
 import pytest
 
@@ -60,9 +62,9 @@ class Browser:
             assert time.monotonic() < end, f'this never became true: {script}'
             time.sleep(0.05)
 
-    def size(self, width, height, *, is_phone=False):
+    def size(self, width, height):
         self.call('Emulation.setDeviceMetricsOverride', width=width, height=height,
-                  deviceScaleFactor=1, mobile=is_phone)
+                  deviceScaleFactor=1, mobile=False)
 
     def mouse(self, *steps):
         """Press at the first of some points, move over them, and release at the last one."""
@@ -85,13 +87,9 @@ def browser(folder):
         stderr=subprocess.PIPE, text=True)
     try:
         line = next(line for line in process.stderr if 'DevTools listening on' in line)
-        address = line.split()[-1]
-        with client.connect(address, max_size=None, ping_interval=None) as socket:
-            root = Browser.__new__(Browser)
-            root._socket, root._numbers = socket, itertools.count(1)
-            root.requests, root.errors = [], []
-            target = root.call('Target.createTarget', url='about:blank')['targetId']
-        page = address.rpartition('/devtools/')[0] + f'/devtools/page/{target}'
+        address = f'http://{urlsplit(line.split()[-1]).netloc}/json/new'
+        with urlopen(Request(address, method='PUT')) as answer:
+            page = json.load(answer)['webSocketDebuggerUrl']
         with client.connect(page, max_size=None, ping_interval=None) as socket:
             yield Browser(socket)
     finally:

@@ -210,6 +210,14 @@ class Waiting:
         assert self._call() < LONGEST_WAIT_S
 
 
+def usage_of(pid):
+    """Return resident memory in kB, number of threads and of descriptors of a process."""
+    process = Path('/proc', str(pid))
+    status = dict(line.split(':', 1) for line in (process / 'status').read_text().splitlines())
+    return (int(status['VmRSS'].split()[0]), int(status['Threads']),
+            len(list((process / 'fd').iterdir())))
+
+
 def pose_of(tf, frame):
     """Return the position of a frame in the root, as the bridge looks it up."""
     answer = tf.listener.call(LookupPose, f'{BRIDGE}/lookup_pose', LookupPose.Request(frame=frame))

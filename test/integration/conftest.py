@@ -79,6 +79,16 @@ def bridge(shared_bridge, file):
 
 
 @pytest.fixture
+def listener(bridge, start_listener):
+    """Listens to ``/tf_static``, where the frames of that file have arrived."""
+    from changes import listen_to_tf, wait_for_x
+    listener = start_listener()
+    listen_to_tf(listener)
+    wait_for_x(listener, 1.0)
+    return listener
+
+
+@pytest.fixture
 def start_robot_state_publisher(ros_domain):
     """Starts the executable of that name; ``start_robot_state_publisher(*arguments)``."""
     with ended_later(partial(BridgeProcess, program='robot_state_publisher')) as start:

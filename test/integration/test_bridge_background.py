@@ -11,7 +11,6 @@ from changes import (
     asked_to_set,
     BRIDGE,
     last_x,
-    listen_to_tf,
     Monitor,
     set_parameters,
     wait_for_x,
@@ -29,14 +28,6 @@ from sdf_pose_bridge_interfaces.srv import ConvertRotation, LookupPose
 @pytest.fixture(name='slow')
 def make_slow_file(tmp_path):
     return SlowFile(tmp_path / 'slow.sdf')
-
-
-@pytest.fixture(name='listener')
-def listener_to_tf(bridge, start_listener):
-    listener = start_listener()
-    listen_to_tf(listener)
-    wait_for_x(listener, 1.0)
-    return listener
 
 
 def assert_services_answer(listener):

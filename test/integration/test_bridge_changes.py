@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A running bridge whose parameters change, seen by listeners in another process."""
 
-from pathlib import Path
-
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
@@ -16,6 +14,7 @@ from changes import (
     reload,
     replace,
     set_parameters,
+    usage_of,
     wait_for_x,
     world,
 )
@@ -27,15 +26,6 @@ from sizes import size
 from tf2_msgs.msg import TFMessage
 
 FRAMES = ''.join(f'<frame name="f{number}"/>' for number in range(5000))
-
-
-@pytest.fixture
-def listener(bridge, start_listener):
-    """Listens to ``/tf_static``."""
-    listener = start_listener()
-    listen_to_tf(listener)
-    wait_for_x(listener, 1.0)
-    return listener
 
 
 def value_of(listener, name):
@@ -157,10 +147,7 @@ def test_many_reloads_leave_nothing_behind(bridge, start_listener):
             assert answer.success, answer.message
 
     def used():
-        process = Path('/proc', str(bridge.pid))
-        status = dict(line.split(':', 1) for line in (process / 'status').read_text().splitlines())
-        return (int(status['VmRSS'].split()[0]), int(status['Threads']),
-                len(list((process / 'fd').iterdir())))
+        return usage_of(bridge.pid)
 
     reload_often(10)
     memory, threads, files = used()

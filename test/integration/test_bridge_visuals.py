@@ -57,7 +57,7 @@ def wait_for_types(listener, arrays, *types):
     return arrays[-1]
 
 
-def test_each_listener_gets_the_visuals_of_the_published_file(
+def test_each_listener_gets_the_visuals_of_the_published_file_until_a_reload(
         listener, file, start_listener):
     replace(file, crate(BALL))
     arrays = arrays_of(listener)
@@ -68,6 +68,8 @@ def test_each_listener_gets_the_visuals_of_the_published_file(
     assert len(arrays) == 1
     late = start_listener()
     wait_for_types(late, arrays_of(late), Marker.CUBE)
+    assert reload(listener).success
+    assert wait_for_types(listener, arrays, Marker.SPHERE).markers[0].action == Marker.DELETEALL
 
 
 def test_a_file_is_set_while_markers_are_made(listener, tmp_path):
@@ -83,12 +85,3 @@ def test_a_file_is_set_while_markers_are_made(listener, tmp_path):
     with slow.opened():
         set_parameters(listener, sdf_file=str(small))
         wait_for_types(listener, arrays, Marker.SPHERE)
-
-
-def test_visuals_follow_a_reload(listener, file):
-    arrays = arrays_of(listener)
-    wait_for_types(listener, arrays, Marker.CUBE)
-    replace(file, crate(BALL))
-    assert reload(listener).success
-    array = wait_for_types(listener, arrays, Marker.SPHERE)
-    assert array.markers[0].action == Marker.DELETEALL

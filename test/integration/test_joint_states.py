@@ -109,10 +109,7 @@ def test_joints_that_no_message_has_named_are_nowhere_until_their_driver_is_up(
         'anchor_models:=all')
     tf.listener.wait(lambda: joints.send({'turn': 0.0}) and tf.last, lambda: 'the first message')
     poses = listen_to_poses(tf, 'base', 'upper', 'slide', 'tool', 'finger')
-    transforms = {}
-    tf.listener.node.create_subscription(
-        TransformStamped, f'{BRIDGE}/transforms',
-        lambda message: transforms.update({message.child_frame_id: message}), latched(100))
+    transforms = listen_to_transforms(tf)
     tf.listener.wait(
         lambda: 'upper' in transforms and poses.keys() >= {'base', 'upper'}, lambda: poses)
     # On a busy machine the first message may come after the line.
@@ -198,28 +195,24 @@ def test_two_publishers_of_a_joint_are_in_the_log_and_in_diagnostics_until_one_i
 
 def test_later_listeners_get_the_last_positions(follow, joints, tf):
     follow()
-    early = []
-    tf.listener.node.create_subscription(
-        PoseStamped, f'{BRIDGE}/poses/slide', early.append, latched(1))
-    tf.listener.wait(lambda: early, lambda: 'the pose of the slide')
-    sec = joints.send({'turn': 0.0, 'lift': 0.5})
-    # The second one comes when the joints are at rest.
+    tf.wait_for('slide', joints.send({'turn': 0.0, 'lift': 0.5}))
+    transforms, poses = listen_to_transforms(tf), listen_to_poses(tf, 'tool')
+
+    def heights():
+        return (transforms['slide'].transform.translation.z, poses['tool'].pose.position.z)
+
+    # The message of an earlier position may come first.
     tf.listener.wait(
-        lambda: [each.header.stamp.sec for each in early[-2:]] == [sec, sec], lambda: early)
-    transforms, poses = {}, []
+        lambda: len(transforms) == 5 and poses and heights() == (1.5, 2.5),
+        lambda: (transforms, poses))
+
+
+def listen_to_transforms(tf):
+    transforms = {}
     tf.listener.node.create_subscription(
         TransformStamped, f'{BRIDGE}/transforms',
         lambda message: transforms.update({message.child_frame_id: message}), latched(100))
-    tf.listener.node.create_subscription(
-        PoseStamped, f'{BRIDGE}/poses/tool', poses.append, latched(1))
-
-    def has_last_positions():
-        return (
-            len(transforms) == 5 and transforms['slide'].header.stamp.sec == sec
-            and poses and poses[-1].header.stamp.sec == sec)
-    tf.listener.wait(has_last_positions, lambda: f'{sec}: {transforms}, {poses}')
-    assert transforms['slide'].transform.translation.z == 1.5
-    assert poses[-1].pose.position.z == 2.5
+    return transforms
 
 
 def listen_to_poses(tf, *frames):

@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Text instead of a file, and the topic that has it, seen by listeners in another process."""
 
-import json
-
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
@@ -70,15 +68,6 @@ def test_the_text_of_a_file_is_published_again_after_a_reload(file, listener, st
     texts.clear()
     assert reload(listener).success
     wait_for_text(listener, texts, model(2))
-
-
-def test_a_text_is_published_as_a_file_is(start_bridge, start_listener):
-    bridge = start_bridge('--ros-args', '-p', f'robot_description:={json.dumps(model(3))}')
-    bridge.wait_for_line('publishing 2 frames of robot_description with')
-    listener = start_listener()
-    listen_to_tf(listener)
-    wait_for_x(listener, 3.0, 'body')
-    wait_for_text(listener, texts_of(listener), model(3))
 
 
 def test_a_text_takes_the_place_of_a_file_and_is_judged_before(file, listener):
