@@ -57,9 +57,8 @@ _POSE_FORMAT_ATTRIBUTES = frozenset({'degrees', 'rotation_format'})
 _PARTS = {
     path.partition('/')[0] for part in PARTS_OF_MODEL.values() for path, _ in part.references}
 """Child elements with references, which are defined in the file of their parent element."""
-_MOST_IDS_COMPARED = 2000
 _MOST_ELEMENTS_SEARCHED = 10_000
-_LONGEST_ID_COMPARED = 200
+_LONGEST_ID = 400
 
 
 def apply_params(include: XmlElement, top: XmlElement, sources: Sources) -> list[XmlElement]:
@@ -366,10 +365,9 @@ def hint_for_id(top: XmlElement, element_id: str, problems: Problems, tag: str =
 
     :param problems: the problems of the load, which limit the number of hints.
     """
-    if not problems.allows_hint() or len(element_id) > _LONGEST_ID_COMPARED:
+    if not problems.allows_hint():
         return ''
-    searched = islice(_ids(top, ''), _MOST_ELEMENTS_SEARCHED)
-    ids = [found for found in searched if found[0]][:_MOST_IDS_COMPARED]
+    ids = [*filter(None, islice(_ids(top, ''), _MOST_ELEMENTS_SEARCHED))]
     tags = [found_tag for found_id, found_tag in ids if found_id == element_id]
     if tag in tags and len(element_id.split(SEPARATOR)[0].encode()) == 1:
         return '; libsdformat does not find names of one letter at the top of a model'
@@ -381,13 +379,13 @@ def hint_for_id(top: XmlElement, element_id: str, problems: Problems, tag: str =
     return hint_from_names(element_id, wanted)
 
 
-def _ids(xml: XmlElement, scope: str) -> Iterator[tuple[str, str]]:
-    """Iterate over ids and tags in an element; empty ones for elements without an id."""
+def _ids(xml: XmlElement, scope: str) -> Iterator[tuple[str, str] | None]:
+    """Iterate over the elements in an element: id and tag, or None if it has no id."""
     for child in child_elements(xml):
         name = attribute_of(child, 'name')
         scoped = scoped_name(scope, name)
-        if name and len(scoped) <= 2 * _LONGEST_ID_COMPARED:
+        if name and len(scoped) <= _LONGEST_ID:
             yield scoped, written_tag(child)
             yield from _ids(child, scoped)
         else:
-            yield '', ''
+            yield None

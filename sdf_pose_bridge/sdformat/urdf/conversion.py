@@ -44,13 +44,13 @@ from sdf_pose_bridge.sdformat.urdf.robot import (
     RobotLink,
 )
 from sdf_pose_bridge.sdformat.urdf.values import (
-    leading_numbers,
     Numbers,
     pose_from_xyz_rpy,
     rpy_by_gz_math,
     rpy_by_urdfdom,
     text_from_numbers,
 )
+from sdf_pose_bridge.sdformat.values import number_from_word, words_of
 from sdf_pose_bridge.sdformat.xml_tree import (
     child_elements,
     first_child,
@@ -348,7 +348,8 @@ class _Conversion:
                 pose, 'the attributes of this <pose> are ignored, as libsdformat ignores them '
                 'where a fixed joint is removed')
             pose.attrib.clear()
-        numbers = list(leading_numbers(text_of(pose) or '0 0 0 0 0 0', 6))
+        words = words_of(text_of(pose) or '0 0 0 0 0 0')[:6]
+        numbers = [number for word in words for number in number_from_word(word)]
         name = link.name
         while self._bases[name].link.name != name:
             if len(numbers) != 6 or not all(map(math.isfinite, numbers)):

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 import math
-import re
 from typing import TypeAlias
 
 from sdf_pose_bridge.geometry.poses import Pose
@@ -15,9 +14,6 @@ from sdf_pose_bridge.sdformat.grammar import Item
 from sdf_pose_bridge.sdformat.values import number_from_word
 from sdf_pose_bridge.sdformat.xml_tree import text_of, WHITE_SPACE, written_tag, XmlElement
 
-_LEADING_NUMBER = re.compile(
-    r'[+-]?(?:[0-9]+\.?[0-9]*(?:[eE][+-]?[0-9]+)?|\.[0-9]+(?:[eE][+-]?[0-9]+)?|inf|nan)',
-    re.IGNORECASE)
 _URDFDOM_GIMBAL_LOCK = 1e-5
 _GZ_MATH_GIMBAL_LOCK = 1e-15
 """If 1 - abs(sin(pitch)) is less, libsdformat writes angles that are only nearly the same."""
@@ -39,12 +35,6 @@ def is_true(xml: XmlElement) -> bool:
     """
     value = xml.get('value', text_of(xml))
     return value.strip(WHITE_SPACE).lower() in ('true', 'yes', '1')
-
-
-def leading_numbers(text: str, count: int) -> Sequence[float]:
-    """Return the numbers that the first words begin with; other words have none."""
-    words = text.split()[:count]
-    return [float(number[0]) for number in map(_LEADING_NUMBER.match, words) if number]
 
 
 def numbers_of(xml: XmlElement, rules: Iterable[Item]) -> dict[str, list[float]]:
