@@ -123,13 +123,11 @@ class PoseText:
             keeps_rotation=keeps_rotation)
         if not words:
             return self._with_content(element, ' '.join(new_words).encode())
-        changed = [
-            index for index, new in enumerate(new_words) if words[index][0] != new.encode()] or [0]
-        text, begin = b'', words[changed[0]].start()
+        text, begin = b'', words[0].start()
         position = begin
-        for index in range(changed[0], changed[-1] + 1):
-            text += self._text[position:words[index].start()] + new_words[index].encode()
-            position = words[index].end()
+        for word, new in zip(words, new_words, strict=True):
+            text += self._text[position:word.start()] + new.encode()
+            position = word.end()
         return self._change(begin, position, text)
 
     def with_new_pose(self, element: int, pose: Pose, tolerance: float) -> FileChange:
