@@ -11,17 +11,16 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 import enum
 import math
-from typing import NamedTuple, TypeVar
+from types import MappingProxyType
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sdf_pose_bridge.geometry.rotations import Floats
 
-_Made = TypeVar('_Made')
 _SEGMENTS = 24
 """Number of sides of a surface that is round about its z axis."""
-_NO_SIZES: Mapping[str, tuple[float, ...]] = {}
 
 
 class Primitive(enum.Enum):
@@ -71,7 +70,7 @@ class ShapeType(NamedTuple):
     does not support it.
     """
 
-    sizes_m: Mapping[str, tuple[float, ...]] = _NO_SIZES
+    sizes_m: Mapping[str, tuple[float, ...]] = MappingProxyType({})
     """Tags of its sizes, with their defaults."""
     required_count: int = 3
     """Number of sizes, from the first, that have to be positive."""
@@ -196,10 +195,6 @@ def _round_surface(profile_m: Sequence[tuple[float, float]]) -> Surface:
         points.reshape(-1, 3), np.concatenate([lower.reshape(-1, 3), upper.reshape(-1, 3)]))
 
 
-def _of_sphere(function: Callable[..., _Made]) -> Callable[..., _Made]:
-    return lambda radius_m: function(radius_m, radius_m, radius_m)
-
-
 _RADIUS_AND_LENGTH = {'radius': (1.0,), 'length': (1.0,)}
 
 SHAPE_TYPES: Mapping[str, ShapeType] = {
@@ -213,8 +208,10 @@ SHAPE_TYPES: Mapping[str, ShapeType] = {
         {'radii': (1.0, 1.0, 1.0)}, 3, _ellipsoid_surface, _ellipsoid, _ellipsoid_solid),
     'plane': ShapeType({'size': (1.0, 1.0)}, 2, _plane_surface),
     'sphere': ShapeType(
-        {'radius': (1.0,)}, 1, _of_sphere(_ellipsoid_surface), _of_sphere(_ellipsoid),
-        _of_sphere(_ellipsoid_solid)),
+        {'radius': (1.0,)}, 1,
+        lambda radius_m: _ellipsoid_surface(radius_m, radius_m, radius_m),
+        lambda radius_m: _ellipsoid(radius_m, radius_m, radius_m),
+        lambda radius_m: _ellipsoid_solid(radius_m, radius_m, radius_m)),
     'mesh': ShapeType(),
     'heightmap': ShapeType(),
     'image': ShapeType(),

@@ -104,8 +104,7 @@ class Shape(NamedTuple):
     def surface(self) -> Surface:
         """Its surface, if :attr:`reason_without_surface` is empty."""
         make = SHAPE_TYPES[self.type].surface
-        if make is None:
-            raise ValueError(self.reason_without_surface)
+        assert make is not None
         points_m, faces = make(*self.sizes_m)
         return Surface(_rotated_to_normal(points_m, self.normal), faces)
 

@@ -186,8 +186,3 @@ def test_plane_has_its_normal(normal):
 
 def test_normal_of_a_box_means_nothing():
     assert shape_in('<box><normal>1 0 0</normal></box>').normal == (0, 0, 1)
-
-
-def test_mesh_has_no_surface_here():
-    with pytest.raises(ValueError, match='a mesh is not supported'):
-        shape_in('<mesh><uri>u</uri></mesh>').surface  # noqa: B018

@@ -169,10 +169,9 @@ class ResourceFinder(NamedTuple):
         folder, missing = self._deepest_folder(uri, including_file)
         if folder:
             return f'"{folder}" has no "{missing}"{_hint_about_missing(missing, [folder])}'
-        beside = [] if scheme in _SHARED else [
-            os.path.dirname(including_file) or '.']  # noqa: PTH120
-        directories = [*dict.fromkeys((
-            *beside, *self.search_paths, *self.environment_paths, '.'))]
+        directories = [*dict.fromkeys(
+            each.directory or '.' for each in self._candidates(uri, including_file)
+            if not each.is_owner)] or ['.']
         reason = f'it is not in {quoted_names(directories)}'
         first, _, rest = name.lstrip('/').partition('/')
         if scheme == 'package':
