@@ -183,14 +183,10 @@ class _Changer:
             if found is not None:
                 target.remove(found)
 
-    def _modify(
-        self, xml: XmlElement, target: XmlElement, *, is_read_before: bool = False,
-    ) -> None:
+    def _modify(self, xml: XmlElement, target: XmlElement) -> None:
         text = text_of(xml)
         has_text = bool(text.strip())
-        self._change(
-            xml, target, text if has_text and _holds_value(target) else None,
-            is_read_before=is_read_before or not has_text)
+        self._change(xml, target, text if has_text and _holds_value(target) else None)
         if not has_text:
             for child in child_elements(xml):
                 self._modify_child(child, target)
@@ -200,7 +196,7 @@ class _Changer:
         if found is None:
             return
         if not _is_empty(xml):
-            self._modify(xml, found, is_read_before=True)
+            self._modify(xml, found)
         elif _holds_value(found):
             is_end = written_tag(target) == 'joint' and found.tag in ('parent', 'child')
             definition = definition_in_tree(found)
@@ -208,21 +204,20 @@ class _Changer:
                 # Without the element, its default applies.
                 target.remove(found)
                 return
-            self._change(xml, found, DEFAULT_END if is_end else '', is_read_before=False)
+            self._change(xml, found, DEFAULT_END if is_end else '')
         else:
             msg = f'<{written_tag(xml)}> holds nothing, so it changes nothing'
             self._sources.warning(xml, msg)
 
-    def _change(
-        self, xml: XmlElement, target: XmlElement, text: str | None, *, is_read_before: bool,
-    ) -> None:
+    def _change(self, xml: XmlElement, target: XmlElement, text: str | None) -> None:
         """
         Change the attributes of an element to those of a parameter, and its text if one is given.
 
-        :param is_read_before: whether its text is read before its attributes change. Then those
-            of the format of a pose are for the next text.
+        Only if the parameter itself has the action and a text, libsdformat reads the text with the
+        new attributes. Otherwise those of the format of a pose are for its next text.
         """
         is_changed = text is not None
+        is_read_before = text is None or xml.get('action') is None
         if is_changed:
             target.attrib.update(dict(self._sources.origin(target).next_attributes))
             target[:] = []
