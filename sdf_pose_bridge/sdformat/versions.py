@@ -10,8 +10,6 @@ decides the meaning of names and attributes that newer versions changed. Source:
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import cache
 from typing import NamedTuple
 
 from lxml import etree
@@ -130,7 +128,7 @@ def convert(root: XmlElement, version: Version, sources: Sources) -> None:
             del pose.attrib['relative_to']
     if allows_scoped_names(version) and sources.may_hold_scoped_names:
         for model in root.iterfind('world/model'):
-            _nest_scoped_elements(model, sources, cache(_ELEMENTS_WITH_REFERENCES))
+            _nest_scoped_elements(model, sources)
 
 
 def _report_deprecated(root: XmlElement, version: Version, sources: Sources) -> None:
@@ -185,10 +183,7 @@ def _convert_axes(root: XmlElement, version: Version, sources: Sources) -> None:
         xyz.set('expressed_in', MODEL_FRAME)
 
 
-def _nest_scoped_elements(
-    model: XmlElement, sources: Sources, referrers: Callable[[XmlElement], list[XmlElement]],
-    depth: int = 1,
-) -> None:
+def _nest_scoped_elements(model: XmlElement, sources: Sources, depth: int = 1) -> None:
     """
     1.7 to 1.8: move elements named ``nested::name`` into a new model ``nested``, recursively.
 
@@ -197,8 +192,6 @@ def _nest_scoped_elements(
     stops at the first model that is nested already: it converts this model, but no later elements
     of the outer model, unless an earlier element has the same ``nested``.
 
-    :param referrers: finds the elements with references in a moved element, which may move once
-        for each model in its name.
     :raises ConversionError: if a moved element refers to something outside its new model.
     """
     sources.check_depth(depth, model)
@@ -207,7 +200,7 @@ def _nest_scoped_elements(
     for child in list(child_elements(model)):
         scope, separator, name = attribute_of(child, 'name').partition(SEPARATOR)
         if child.tag == 'model' and scope and not separator and not is_stopped:
-            _nest_scoped_elements(child, sources, referrers, depth + 1)
+            _nest_scoped_elements(child, sources, depth + 1)
             is_stopped = True
         part = PARTS_OF_MODEL.get(child.tag)
         if part is None or not part.has_name or not separator or not name:
@@ -225,12 +218,12 @@ def _nest_scoped_elements(
         if child.tag == 'frame' and name == MODEL_FRAME:
             _replace_model_frame(child, nested_models[scope], prefix)
             continue
-        _remove_prefix_from_references(child, prefix, sources, referrers)
+        _remove_prefix_from_references(child, prefix, sources)
         child.set('name', name)
         nested_models[scope].append(child)
     for nested_model in nested_models.values():
         model.append(nested_model)
-        _nest_scoped_elements(nested_model, sources, referrers, depth + 1)
+        _nest_scoped_elements(nested_model, sources, depth + 1)
 
 
 def _replace_model_frame(frame: XmlElement, nested_model: XmlElement, prefix: str) -> None:
@@ -246,10 +239,7 @@ def _replace_model_frame(frame: XmlElement, nested_model: XmlElement, prefix: st
         parent.remove(frame)
 
 
-def _remove_prefix_from_references(
-    xml: XmlElement, prefix: str, sources: Sources,
-    referrers: Callable[[XmlElement], list[XmlElement]],
-) -> None:
+def _remove_prefix_from_references(xml: XmlElement, prefix: str, sources: Sources) -> None:
     pose = xml.find('pose')
     if pose is not None:
         # If it is relative to another frame, that is looked up in the new model.
@@ -259,7 +249,7 @@ def _remove_prefix_from_references(
     if xml.tag == 'model':
         # References in it are to names in it.
         return
-    for element in referrers(xml):
+    for element in _ELEMENTS_WITH_REFERENCES(xml):
         for attribute in REFERENCE_ATTRIBUTES:
             name = attribute_of(element, attribute)
             if name and element is not pose:
