@@ -61,6 +61,13 @@ def test_a_python_of_apt_needs_an_environment(run_main, monkeypatch, tmp_path, i
     assert way in run_main('view', 'good.sdf', '-o', 'page.html').stderr
 
 
+def test_viser_that_is_started_in_another_way_is_an_error_of_one_line(run_main, monkeypatch):
+    monkeypatch.setattr('viser.ViserServer', lambda *_, **__: None)
+    done = run_main('view', 'good.sdf', '-o', 'page.html')
+    assert (done.returncode, len(done.stderr.splitlines())) == (1, 1)
+    assert 'does not work as the releases' in done.stderr
+
+
 def test_missing_browser_is_an_error_of_one_line(run_main, monkeypatch):
     monkeypatch.setattr('shutil.which', lambda name, **_: None)
     done = run_main('view', 'good.sdf', '-o', 'page.png')

@@ -24,11 +24,11 @@ BOX = '<geometry><box/></geometry>'
 @pytest.fixture
 def drawing_of(server, mesh_reader):
     """Returns the drawing of a model with these elements, and its scene."""
-    def draw(content):
+    def draw(content, hidden=()):
         text = f'<sdf version="1.11"><model name="m">{content}</model></sdf>'
         shown = ShownScene(load_text(text.encode(), 'm.sdf', shapes=True), TfOptions())
         return Drawing(
-            server.scene, '/drawing', VisiblePart(shown, mesh_reader, set()), print), shown
+            server.scene, '/drawing', VisiblePart(shown, mesh_reader, hidden), print), shown
     return draw
 
 
@@ -42,12 +42,26 @@ def test_names_of_bodies_are_in_the_order_of_the_nodes(drawing_of):
         '/drawing/visuals/0', '/drawing/collisions/1']
 
 
-def test_name_of_the_selected_frame_stands_at_its_new_pose(drawing_of):
+def test_selected_frame_and_its_name_stand_at_its_new_pose(drawing_of):
     drawing, shown = drawing_of('<link name="a"/>')
     frame = shown.tree.frame_ids.index('a')
     moved = shown.with_pose(frame, Pose(3.0, 0.0, 1.0))
     assert json.loads(drawing.show(moved, frame, ROOT_IS_PARENT, METRES)) == [
         ['m', False, 0.0, 0.0, 0.0], ['a', True, 3.0, 0.0, 1.0]]
+    assert drawing._marker.position.tolist() == [3.0, 0.0, 1.0]
+    assert shown.pose_of(frame) == Pose()
+
+
+@pytest.mark.parametrize(('hidden', 'lines'), [
+    (set(), [(1, 0), (1, 2), (2, 3), (1, 4)]), ({'all lines to parents'}, [(2, 3), (1, 2)])])
+def test_lines_lead_to_the_parents_of_frames(drawing_of, hidden, lines):
+    drawing, shown = drawing_of(
+        '<link name="a"><pose>1 0 0 0 0 0</pose></link>'
+        '<frame name="b" attached_to="a"><pose>1 0 0 0 0 0</pose></frame>'
+        '<frame name="c" attached_to="b"><pose>1 0 0 0 0 0</pose></frame>'
+        '<frame name="d" attached_to="a"><pose>3 0 0 0 0 0</pose></frame>', hidden)
+    drawing.show(shown, shown.ids.index('c'), ROOT_IS_PARENT, METRES)
+    assert [tuple(line[:, 0].tolist()) for line in drawing._lines.points] == lines
 
 
 def test_name_of_a_missing_mesh_precedes_those_of_frames(drawing_of):

@@ -123,10 +123,11 @@ def test_pose_in_another_frame_and_in_the_file(scene, frame, line):
     shown = ShownScene(scene, TfOptions())
     index = shown.ids.index(frame)
     text = html_of_selection(
-        shown, shown.with_pose(index, Pose(x=0.5)), index, ROOT_IS_PARENT, Units())
+        shown, shown.with_pose(index, Pose(x=0.5)), index, shown.ids.index(HOSTILE), Units())
+    assert HOSTILE not in text
     in_file = line and f'in the file {Path("cell.sdf").resolve()}{line}'
     assert html.unescape(text).startswith(
-        f'<b>{frame}</b> in world: xyz 0.5000 0.0000 0.0000 m, rpy 0.0000 0.0000 0.0000 rad'
+        f'<b>{frame}</b> in {HOSTILE}: xyz 0.5000 0.0000 0.0000 m, rpy 0.0000 0.0000 0.0000 rad'
         f'<div>{in_file}</div>')
 
 

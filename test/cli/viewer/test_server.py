@@ -12,7 +12,6 @@ from websockets.asyncio import server as websockets_server
 from websockets.datastructures import Headers
 from websockets.http11 import Request
 
-from sdf_pose_bridge.cli.viewer import UntestedViserError
 from sdf_pose_bridge.cli.viewer.frame_texts import html_of_data
 from sdf_pose_bridge.cli.viewer.server import (
     page_with_script,
@@ -65,12 +64,6 @@ def request(path, origin, host):
         if value is not None:
             headers[name] = value
     return Request(path, headers)
-
-
-def test_a_server_that_is_started_in_another_way_is_an_error(monkeypatch):
-    monkeypatch.setattr('viser.ViserServer', lambda *_, **__: None)
-    with pytest.raises(UntestedViserError, match='does not work as the releases'):
-        server_for_its_owner(0, 'a.sdf')
 
 
 def test_each_server_has_its_own_secret():
