@@ -69,9 +69,8 @@ def test_name_of_a_missing_mesh_precedes_those_of_frames(drawing_of):
     drawing, shown = drawing_of(
         f'<link name="{"a" * 40}">'
         f'<visual name="v"><pose>0.2 1 0 0 0 0</pose>{mesh}</visual></link>')
-    assert [label[:2] for label in json.loads(
-            drawing.show(shown, -1, ROOT_IS_PARENT, METRES))] == [
-        ['a.stl?', True], ['m', False], ['a' * 40, False]]
+    assert json.loads(drawing.show(shown, -1, ROOT_IS_PARENT, METRES)) == [
+        ['a.stl?', True, 0.2, 1.0, 0.0], ['m', False, *[0.0] * 3], ['a' * 40, False, *[0.0] * 3]]
 
 
 @pytest.mark.parametrize(('size', 'ground_m'), [('1 1 1', -0.5), ('3 3 1', 0.0)])

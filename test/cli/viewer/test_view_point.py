@@ -23,38 +23,29 @@ NO_BOXES = np.zeros((0, 2, 3))
 CUBE = np.array([(-1.0, -1.0, -1.0), (1.0, 1.0, 1.0)])
 
 
-def interest(origins, boxes=NO_BOXES, robot=()):
-    return bounds_of_interest(*(
-        np.array(each, float).reshape(-1, *shape)
-        for each, shape in ((origins, [3]), (boxes, [2, 3]), (robot, [3]))))
+BODY = [(-0.5, -0.5, 0), (0.5, 0.5, 1)]
+FLOOR = [(-10, -10, -0.1), (10, 10, 0)]
+DISTANT = [(5, 0, 0), (5.5, 0.5, 0.5)]
+WHEELS = [[(-0.1, y - 0.5, 0), (0.1, y + 0.5, 1)] for y in (-3, 3)]
+ROW = [(x, 0, 0) for x in (*range(20), 100)]
 
 
-def test_no_frames_and_no_bodies():
-    assert interest([]).tolist() == [[0, 0, 0], [0, 0, 0]]
-
-
-def test_few_frames_are_all_shown():
-    assert interest([(0, 0, 0), (1, 2, 3)]).tolist() == [[0, 0, 0], [1, 2, 3]]
-
-
-@pytest.mark.parametrize(('robot', 'highest'), [((), 18), ([(100, 0, 0)], 100)])
-def test_a_frame_far_from_many_counts_in_a_robot_only(robot, highest):
-    origins = [(x, 0, 0) for x in (*range(20), 100)]
-    assert interest(origins, robot=robot)[1, 0] == highest
-
-
-@pytest.mark.parametrize('floor', [
-    [(-10, -10, -0.1), (10, 10, 0)], [(5, 0, 0), (5.5, 0.5, 0.5)]])
-def test_large_and_distant_bodies_do_not_count(floor):
-    body = [(-0.5, -0.5, 0), (0.5, 0.5, 1)]
-    boxes = np.array([floor, body], float)
-    assert interest([(0, 0, 0), (0.5, 0.5, 2)], boxes).tolist() == [[-0.5, -0.5, 0], [0.5, 0.5, 2]]
-
-
-def test_bodies_of_a_robot_count_where_its_frames_are_at_one_place():
-    wheels = [[(-0.1, y - 0.5, 0), (0.1, y + 0.5, 1)] for y in (-3, 3)]
-    robot = [(0, 0, 0), (0, -3, 0.5), (0, 3, 0.5)]
-    assert interest([(0, 0, 0)], wheels, robot).tolist() == [[-0.1, -3.5, 0], [0.1, 3.5, 1]]
+@pytest.mark.parametrize(('origins', 'boxes', 'robot', 'bounds'), [
+    pytest.param([], [], [], [[0, 0, 0], [0, 0, 0]], id='nothing'),
+    pytest.param([(0, 0, 0), (1, 2, 3)], [], [], [[0, 0, 0], [1, 2, 3]], id='few frames'),
+    pytest.param([(0, 0, 0)], [CUBE], [], CUBE.tolist(), id='the body of a single frame'),
+    pytest.param(ROW, [], [], [[2, 0, 0], [18, 0, 0]], id='a frame far from many'),
+    pytest.param(ROW, [], [(100, 0, 0)], [[2, 0, 0], [100, 0, 0]], id='such a frame of a robot'),
+    pytest.param([(0, 0, 0), (0.5, 0.5, 2)], [FLOOR, BODY], [],
+                 [[-0.5, -0.5, 0], [0.5, 0.5, 2]], id='a large body'),
+    pytest.param([(0, 0, 0), (0.5, 0.5, 2)], [DISTANT, BODY], [],
+                 [[-0.5, -0.5, 0], [0.5, 0.5, 2]], id='a distant body'),
+    pytest.param([(0, 0, 0)], WHEELS, [(0, 0, 0), (0, -3, 0.5), (0, 3, 0.5)],
+                 [[-0.1, -3.5, 0], [0.1, 3.5, 1]], id='bodies of a robot with one frame')])
+def test_first_view(origins, boxes, robot, bounds):
+    assert bounds_of_interest(*(
+        np.array(each, float).reshape(-1, *shape) for each, shape in (
+            (origins, [3]), (boxes, [2, 3]), (robot, [3])))).tolist() == bounds
 
 
 def test_axes_of_frames_that_are_seen_are_in_the_view():
@@ -62,10 +53,6 @@ def test_axes_of_frames_that_are_seen_are_in_the_view():
     poses = np.array([(1, 1, 1, 0, 0, 0, 1), (-1, 0, 0, *turned_about_z), (5, 0, 0, 0, 0, 0, 1)])
     assert bounds_with_axes(CUBE, poses, 0.5) == pytest.approx(
         np.array([(-1.5, -1, -1), (1.5, 1.5, 1.5)]))
-
-
-def test_body_of_a_single_frame_counts():
-    assert interest([(0, 0, 0)], CUBE[np.newaxis]).tolist() == CUBE.tolist()
 
 
 @pytest.mark.parametrize('direction', [*DIRECTIONS.values(), (1, 2, -3)])
