@@ -151,24 +151,6 @@ def test_a_flood_of_messages_does_not_keep_callers_waiting(follow, tf):
         flooding.end()
 
 
-def test_stamps_that_go_back_are_in_the_log_and_in_diagnostics_until_they_move_frames(
-        follow, joints, tf):
-    bridge = follow()
-    monitor = Monitor(tf.listener)
-    monitor.wait_for(DiagnosticStatus.OK)
-    old = joints.send({'turn': 0.0, 'lift': 0.0}) - 100
-    tf.wait_for('slide', old + 100)
-    tf.listener.wait(
-        lambda: joints.send({'lift': 0.5}, sec=old)
-        and monitor.status.level == DiagnosticStatus.WARN, lambda: monitor.status)
-    assert monitor.status.message.startswith(
-        'messages from /joint_states move nothing, for example "lift": their stamps are 100.000 s')
-    bridge.wait_for_line('are 100.000 s older than the last one')
-    set_parameters(tf.listener, ignore_timestamp=True)
-    tf.wait_for('slide', joints.send({'lift': 0.5}, sec=old))
-    monitor.wait_for(DiagnosticStatus.OK)
-
-
 def test_two_publishers_of_a_joint_are_in_the_log_and_in_diagnostics_until_one_is_gone(
         follow, joints, tf, start_listener):
     bridge = follow()

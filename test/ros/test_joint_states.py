@@ -247,10 +247,10 @@ def test_stamps_that_go_back_are_reported_once_and_until_a_joint_of_them_moves_a
     arm.published((FIRST + 100, {'turn': 0.5}))
 
     def is_late():
-        # Messages with other names go on.
+        # Messages with one of the names go on.
         nonlocal sec
         sec += 1
-        arm.send(FIRST + 50, {'turn': 0.1})
+        arm.send(FIRST + 50, {'turn': 0.1, 'lift': 0.1})
         arm.send(sec, {'lift': 0.1})
         arm.spin(0.05)
         return arm.states.unreported.problems

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Frames of cameras and at joints; test_urdf_robot.py compares the poses of the latter."""
 
-from matrices import assert_same_pose, matrix_from_pose, matrix_from_rpy
+from matrices import assert_same_pose, matrix_from_rpy
 import numpy as np
 import pytest
 from sdf_texts import joint, model_file, posed, world_file
@@ -28,13 +28,6 @@ def test_a_camera_has_an_optical_frame():
     assert parents['l/cam_optical'] == 'l/cam'
     assert_same_pose(
         tree.transforms[tree.frame_ids.index('l/cam_optical')].tolist(), OPTICAL, 1e-12)
-
-
-def test_z_of_an_optical_frame_is_ahead_and_y_down():
-    tree = tree_of(model_file(f'<link name="l">{camera()}</link>'))
-    matrix = matrix_from_pose(pose_of(tree, 'l/cam_optical'))
-    np.testing.assert_allclose(matrix[:3, 2], (1, 0, 0), atol=1e-15)
-    np.testing.assert_allclose(matrix[:3, 1], (0, 0, -1), atol=1e-15)
 
 
 def test_the_quaternion_of_an_optical_frame_is_canonical():

@@ -9,7 +9,7 @@ from matrices import assert_same_pose, matrix_from_degrees, matrix_from_pose
 import numpy as np
 import pytest
 from random_scenes import random_scenes
-from sdf_texts import fixed_joint, joint, model_file, world_file
+from sdf_texts import joint, model_file, world_file
 
 pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import given
@@ -159,17 +159,6 @@ def test_a_model_that_is_not_anchored_has_no_transform_to_move():
         '<parent>world</parent><child>a</child>', 'j', 'revolute'))
     assert moving_ids(moving_tree(text)) == ['a']
     assert not moving_ids(moving_tree(text, anchor_models=AnchorModels.NONE))
-
-
-def test_a_single_frame_that_is_not_anchored():
-    tree = moving_tree(model_file('<link name="a"/>'), anchor_models=AnchorModels.NONE,
-                       kinds=frozenset({Kind.LINK}))
-    assert (tree.frame_ids, tree.parents.tolist(), moving_ids(tree)) == (('a',), [NO_PARENT], [])
-
-
-def test_fixed_joints_move_nothing():
-    links = '<link name="a"/><link name="b"/>'
-    assert not moving_ids(moving_tree(model_file(links + fixed_joint('j', 'a', 'b'))))
 
 
 def test_quaternions_have_the_canonical_sign():

@@ -109,10 +109,6 @@ def test_only_models_of_a_world_with_joints_that_move_are_listed(text):
     assert positions_of(text).models == ()
 
 
-def test_the_models_are_those_that_are_published():
-    assert positions_of(world_file(model('x') + model('y')), model='y').models == ('y',)
-
-
 def test_a_message_about_a_joint_is_one_about_all_joints_of_its_model():
     second = joint('<parent>b</parent><child>c</child>', 'k', 'revolute')
     positions = positions_of(world_file(model('x', second) + model('y')))
@@ -125,11 +121,6 @@ def test_the_second_joint_that_a_screw_joint_has_in_urdf_is_not_unknown():
         '<link name="a"/><link name="b"/>'
         '<joint name="j" type="screw"><parent>a</parent><child>b</child></joint>')
     assert positions_of(text).unknown(['j', 'j_slide', 'k_slide']) == ['k_slide']
-
-
-def test_names_of_models_can_be_left_out_where_one_joint_is_meant():
-    text = world_file(model('x') + '<model name="y"><static>1</static><link name="l"/></model>')
-    assert positions_of(text).selection(['j']).dofs.tolist() == [0]
 
 
 def test_the_name_of_a_joint_itself_comes_first():
@@ -151,11 +142,6 @@ def test_names_of_a_second_axis_and_of_a_ball_joint():
         LINKS + joint(ENDS + axes, 'u', 'universal')
         + joint('<parent>b</parent><child>c</child>', 'o', 'ball'))
     assert set(positions_of(text).names) == {'u', 'u_axis2', 'o_roll', 'o_pitch', 'o_yaw'}
-
-
-def test_a_hint_names_the_nearest_joint():
-    positions = positions_of(model_file(LINKS + joint(ENDS, 'shoulder', 'revolute')))
-    assert positions.hint('sholder') == '; did you mean "shoulder"?'
 
 
 # Positions
@@ -308,13 +294,6 @@ def test_a_pose_that_cannot_be_used_is_ignored(x):
     positions = free_positions('p')
     place(positions, 1, 1.0)
     assert place(positions, 1, x, 6) == ['p']
-    assert x_of(positions, 1) == 1.0
-
-
-def test_an_older_pose_is_ignored():
-    positions = free_positions('p')
-    place(positions, 1, 1.0)
-    assert not place(positions, 1, 2.0, 4)
     assert x_of(positions, 1) == 1.0
 
 
