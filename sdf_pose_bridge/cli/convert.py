@@ -32,7 +32,7 @@ from sdf_pose_bridge.geometry.formats import (
 from sdf_pose_bridge.geometry.poses import Pose, pose_inverse, pose_products, relative_poses
 from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.geometry.sequences import ZYX
-from sdf_pose_bridge.geometry.units import number_from_text
+from sdf_pose_bridge.geometry.units import number_from_text, TEXT_FORMATS
 from sdf_pose_bridge.names import printable
 
 LINES_AT_A_TIME = 10_000
@@ -40,14 +40,6 @@ LINES_AT_A_TIME = 10_000
 
 FORMATS: Mapping[str, Format] = {**ROTATION_FORMATS, **POSE_FORMATS}
 """All formats of numbers."""
-
-TEXT_FORMATS = {
-    'urdf_origin': ('sdf_rpy', '<origin xyz="{} {} {}" rpy="{} {} {}"/>'),
-    'sdf_pose': ('sdf_rpy', '<pose>{} {} {} {} {} {}</pose>'),
-    'static_transform_publisher': (
-        'sdf_quat_xyzw', '--x {} --y {} --z {} --qx {} --qy {} --qz {} --qw {}'),
-}
-"""Texts that are printed for a pose: the format of their numbers, and the places of these."""
 
 _NAMES = {name for each in FORMATS.values() for name in (each.name, *each.synonyms)}
 

@@ -12,6 +12,14 @@ from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
 from sdf_pose_bridge.names import shortened
 
+TEXT_FORMATS = {
+    'urdf_origin': ('sdf_rpy', '<origin xyz="{} {} {}" rpy="{} {} {}"/>'),
+    'sdf_pose': ('sdf_rpy', '<pose>{} {} {} {} {} {}</pose>'),
+    'static_transform_publisher': (
+        'sdf_quat_xyzw', '--x {} --y {} --z {} --qx {} --qy {} --qz {} --qw {}'),
+}
+"""Texts for other programs: the format of their numbers, and the places of these."""
+
 
 class Unit(NamedTuple):
     """A unit of lengths or angles, with the number of digits to show."""

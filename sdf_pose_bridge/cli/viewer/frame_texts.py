@@ -16,7 +16,7 @@ from sdf_pose_bridge import Pose, Scene
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.geometry.formats import converted_poses
 from sdf_pose_bridge.geometry.poses import relative_pose
-from sdf_pose_bridge.geometry.units import POSE_LABELS, Units
+from sdf_pose_bridge.geometry.units import POSE_LABELS, TEXT_FORMATS, Units
 from sdf_pose_bridge.names import is_name_of_proxy, printable, quoted_names, SEPARATOR
 from sdf_pose_bridge.scene.pose_setting import place_of_pose
 from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT
@@ -70,12 +70,11 @@ def html_of_frame(shown: ShownScene, frame: int, reference: int, units: Units) -
     rpy, quat, franka = (
         (converted_poses([pose], 'sdf_quat_xyzw', name)[0].round(12) + 0.0).tolist()
         for name in ('sdf_rpy', 'sdf_quat_xyzw', 'franka_matrix'))
-    arguments = zip(('x', 'y', 'z', 'qx', 'qy', 'qz', 'qw'), quat, strict=True)
+    publisher = 'static_transform_publisher'
     copied = {
         'SDF': f'<pose{_relative_to(scene, element, other)}>{_text(rpy)}</pose>',
-        'static_transform_publisher': shlex.join([
-            *(word for name, value in arguments for word in (f'--{name}', repr(value))),
-            '--frame-id', ids[reference], '--child-frame-id', ids[frame]]),
+        publisher: f'{TEXT_FORMATS[publisher][1].format(*quat)} ' + shlex.join(
+            ['--frame-id', ids[reference], '--child-frame-id', ids[frame]]),
         'x y z, quaternion x y z w': _text(quat),
         'Franka matrix': str(franka),
     }

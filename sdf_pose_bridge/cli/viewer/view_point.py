@@ -12,12 +12,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sdf_pose_bridge.geometry.rotations import Floats, matrix_from_quaternion, Triple
+from sdf_pose_bridge.geometry.rotations import Floats, matrix_from_quaternion
 
 FIELD_OF_VIEW_RAD = 0.8
 """The vertical field of view of the camera."""
 
-DIRECTIONS: Mapping[str, Triple] = {
+DIRECTIONS: Mapping[str, tuple[float, ...]] = {
     # Not exactly along z, because "up" in the picture would be undefined.
     'top': (-1e-3, 0.0, 1.0), 'front': (1.0, 0.0, 0.0), 'side': (0.0, -1.0, 0.0)}
 """Direction from the middle of the picture to the camera for each view; +x is the front."""
