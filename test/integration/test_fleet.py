@@ -140,12 +140,15 @@ def test_too_many_topics_are_rejected_in_a_setting_and_in_a_file(file, tf):
     patterns = [f'{{model}}/j{number}' for number in range(400)]
     assert reason_for_refusal(tf.listener, joint_states_topics=patterns).startswith(
         'joint_states_topics names 1200 topics with 3 models')
-    set_parameters(tf.listener, joint_states_topics=patterns[:300])
-    replace(file, fleet(r1=10, r2=20, r3=30, r4=40))
+    # To subscribe to hundreds of topics takes long on a busy machine.
+    replace(file, fleet())
+    assert reload(tf.listener).success
+    set_parameters(tf.listener, joint_states_topics=patterns)
+    replace(file, fleet(r1=10, r2=20, r3=30))
     answer = reload(tf.listener)
     assert not answer.success
-    assert answer.message.startswith('joint_states_topics names 1200 topics with 4 models')
-    assert pose_of(tf, 'r1::base').x == 10
+    assert answer.message.startswith('joint_states_topics names 1200 topics with 3 models')
+    assert pose_of(tf, 'fence').x == 0
 
 
 def test_too_many_topics_prevent_the_start(start_bridge, file):

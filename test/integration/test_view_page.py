@@ -165,8 +165,14 @@ def test_fields_are_in_view_beside_the_tree_where_a_frame_is_clicked(sized_page,
       'in the file {shown.file}:{line} relative_to="arm": no pose')""")
 
 
+def wait_until_movable(page):
+    page.wait_for("document.querySelector('.strip')?.innerText.includes('numbers to move it')")
+
+
 def type_over(page, element, text):
-    """Type keys into an input element instead of its text."""
+    """Type keys into an input element of the selected frame instead of its text."""
+    # Before, the element is still that of the frame before, and loses the keyboard soon.
+    wait_until_movable(page)
     page.wait_for(f'(input => input && !input.disabled)({element})')
     page.run(f'(input => {{ input.focus(); input.select(); }})({element})')
     for key in text:
@@ -341,7 +347,7 @@ def strip_label(text):
 
 def drag(page):
     """Drag the gizmo of the frame with the hostile name upwards, 11 pixels beside its arrow."""
-    page.wait_for("document.querySelector('.strip')?.innerText.includes('numbers to move it')")
+    wait_until_movable(page)
     # Nothing says when the gizmo is drawn; until then there is nothing to drag.
     page.run('new Promise(drawn => requestAnimationFrame(() => requestIdleCallback(drawn)))')
     points = (point_on_screen(page, (1.0, 0.0, height)) for height in (0.0, 0.02, 0.05, 0.08, 0.1))
