@@ -53,20 +53,6 @@ def run_bare(folders, program):
     return done.stdout
 
 
-def test_a_file_is_loaded_without_ros(bare_folders):
-    out = run_bare(bare_folders, f"""
-import sdf_pose_bridge
-scene = sdf_pose_bridge.load({str(ROOT / 'examples' / 'work_cell.sdf')!r})
-{FOUND_ROS}
-import json
-print(json.dumps([len(scene.names), scene.pose('robot::tool0', 'table'), found]))
-""")
-    count, pose, found = json.loads(out)
-    assert found == []
-    assert count > 50
-    assert len(pose) == 7
-
-
 def test_every_module_of_the_core_is_imported_without_ros(bare_folders):
     out = run_bare(bare_folders, f"""
 import importlib

@@ -33,14 +33,6 @@ def test_text_of_a_place(place, text):
     assert str(place) == text
 
 
-def test_text_of_an_error():
-    assert str(ParsingError('this is wrong', PLACE)) == 'a.sdf:7: PARSING_ERROR: this is wrong'
-
-
-def test_text_of_a_warning():
-    assert str(SdfWarning('WARNING', 'take care', PLACE)) == 'a.sdf:7: WARNING: take care'
-
-
 @pytest.mark.parametrize('error_class', CLASSES)
 def test_every_class_of_errors_has_a_code_and_a_docstring(error_class):
     assert error_class.code not in ('', 'ERROR')
@@ -54,35 +46,22 @@ def test_codes_are_different_for_errors_of_files():
     assert len(set(codes)) == len(codes)
 
 
-def test_single_error_is_the_only_one_of_its_errors():
-    error = ParsingError('x', PLACE)
-    assert error.errors == (error,)
-    assert error.warnings == ()
-
-
-def test_error_has_a_place():
+def test_single_error_has_a_place_and_is_the_only_one_of_its_errors():
     error = ParsingError('x', PLACE)
     assert (error.file, error.line, error.element) == PLACE
+    assert (error.errors, error.warnings) == ((error,), ())
 
 
 # Several errors
 
-def test_error_of_a_load_has_code_and_place_of_the_first():
+def test_error_of_a_load_has_all_errors_with_code_and_place_of_the_first():
     first, second = ParsingError('x', PLACE), FileReadError('y', Place('b.sdf'))
-    error = LoadError([first, second])
+    warning = SdfWarning('WARNING', 'z', PLACE)
+    error = LoadError([first, second], [warning])
+    assert (error.errors, error.warnings) == ((first, second), (warning,))
     assert (error.code, error.message, error.place) == ('PARSING_ERROR', 'x', PLACE)
-
-
-def test_error_of_a_load_has_all_errors_and_warnings():
-    first, second = ParsingError('x', PLACE), FileReadError('y', Place('b.sdf'))
-    error = LoadError([first, second], [SdfWarning('WARNING', 'z', PLACE)])
-    assert error.errors == (first, second)
-    assert len(error.warnings) == 1
-
-
-def test_text_of_the_error_of_a_load_has_a_line_for_each_error():
-    error = LoadError([ParsingError('x', PLACE), FileReadError('y', Place('b.sdf'))])
     assert str(error) == 'a.sdf:7: PARSING_ERROR: x\nb.sdf: FILE_READ: y'
+    assert str(warning) == 'a.sdf:7: WARNING: z'
 
 
 @pytest.mark.parametrize('error', [

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Calls in real processes: their limits, and what happens when one is killed or stopped."""
 
-from concurrent.futures import ThreadPoolExecutor
 import faulthandler
 import os
 import resource
@@ -27,34 +26,32 @@ GROW = 'kept = []\nwhile True: kept.append(bytearray(1_000_000))'
 STARTER_ENDED = 'the process that starts the reading of files has ended'
 
 
+@pytest.fixture(name='pipe')
+def make_pipe():
+    """Descriptors to read from and to write to, which processes inherit."""
+    ends = os.pipe()
+    yield ends
+    for end in ends:
+        os.close(end)
+
+
 @pytest.fixture(name='process')
-def make_process():
+def make_process(pipe):
     process = LimitedProcess()
     yield process
     process.close()
 
 
-@pytest.fixture(name='busy_pid')
-def start_busy_call(process_with_pipe):
-    """Starts a call that says when it runs; ``busy_pid(allowance, code)`` with its future."""
-    process, reader, writer = process_with_pipe
+@pytest.fixture(name='busy')
+def start_busy_call(process, pipe):
+    """Starts a call that says when it runs; ``busy(allowance, code)`` returns its process too."""
+    reader, writer = pipe
 
-    with ThreadPoolExecutor() as executor:
-        def start(allowance, code):
-            code = f'import os; os.write({writer}, b"%d" % os.getpid())\n{code}'
-            future = executor.submit(process.call, allowance, exec, code, {})
-            return process, int(os.read(reader, 20)), future
-        yield start
-
-
-@pytest.fixture(name='process_with_pipe')
-def make_process_with_pipe():
-    reader, writer = os.pipe()
-    process = LimitedProcess()
-    yield process, reader, writer
-    process.close()
-    os.close(reader)
-    os.close(writer)
+    def start(allowance, code):
+        code = f'import os; os.write({writer}, b"%d" % os.getpid())\n{code}'
+        call = process.start(allowance, exec, code, {})
+        return call, int(os.read(reader, 20))
+    return start
 
 
 class StopsWhenPickled:
@@ -75,10 +72,6 @@ def has_ended(pid):
         return bool(select.select([descriptor], [], [], DEADLINE_S)[0])
     finally:
         os.close(descriptor)
-
-
-def raised_by(future):
-    return future.exception(DEADLINE_S)
 
 
 def test_each_call_has_a_clean_process(process):
@@ -130,11 +123,10 @@ def test_a_call_keeps_no_other_one_waiting(process):
         assert not call.has_ended(0.01)
 
 
-def test_a_call_ends_with_its_block(process_with_pipe):
-    process, reader, writer = process_with_pipe
-    code = f'import os; os.write({writer}, b"%d" % os.getpid())\n{SPIN}'
-    with process.start(AMPLE, exec, code, {}):
-        pid = int(os.read(reader, 20))
+def test_a_call_ends_with_its_block(busy):
+    call, pid = busy(AMPLE, SPIN)
+    with call:
+        pass
     assert has_ended(pid)
 
 
@@ -188,14 +180,14 @@ def test_other_threads_run_while_much_is_answered(process):
 
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_to_the_group_is_not_for_it(busy_pid, number):
+def test_a_signal_to_the_group_is_not_for_it(process, busy, number):
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, [])
-    process, pid, future = busy_pid(AMPLE, 'import signal; signal.sigwait([signal.SIGUSR1])')
+    call, pid = busy(AMPLE, 'import signal; signal.sigwait([signal.SIGUSR1])')
     os.kill(pid, number)
     os.kill(process._pid, number)
     os.kill(pid, signal.SIGUSR1)
-    with pytest.raises(ProcessEndedError, match='by signal 10'):
-        future.result(DEADLINE_S)
+    with pytest.raises(ProcessEndedError, match='by signal 10'), call:
+        call.result()
     assert process.call(AMPLE, pow, 2, 2) == 4
     assert signal.pthread_sigmask(signal.SIG_BLOCK, []) == mask
 
@@ -228,10 +220,11 @@ def test_a_process_that_ends_before_it_begins_is_an_error(function, message):
     process.close()
 
 
-def test_a_process_that_is_stopped_while_it_is_busy_is_killed(busy_pid, monkeypatch):
+def test_a_process_that_is_stopped_while_it_is_busy_is_killed(process, busy, monkeypatch):
     monkeypatch.setattr(limited_process, 'WAITING_S', 0.0)
-    process, pid, future = busy_pid(SHORT, 'import signal; signal.raise_signal(signal.SIGSTOP)')
-    assert str(raised_by(future)) == 'more than 1 s'
+    call, pid = busy(SHORT, 'import signal; signal.raise_signal(signal.SIGSTOP)')
+    with pytest.raises(LimitExceededError, match=r'^more than 1 s$'), call:
+        call.result()
     assert has_ended(pid)
     assert process.call(AMPLE, pow, 2, 2) == 4
 
@@ -253,20 +246,21 @@ def test_a_waiting_process_that_is_stopped_keeps_nobody_waiting_longer(process, 
     assert process.call(AMPLE, pow, 2, 2) == 4
 
 
-def test_a_call_is_answered_although_the_waiting_process_is_stopped(process_with_pipe):
-    process, reader, writer = process_with_pipe
+def test_a_call_is_answered_although_the_waiting_process_is_stopped(process, pipe):
+    reader, writer = pipe
     code = f'import os, signal; os.kill(os.getppid(), signal.SIGSTOP); os.write({writer}, b".")'
     process.call(AMPLE, exec, code, {})
     assert os.read(reader, 1) == b'.'
 
 
 @pytest.mark.parametrize('is_busy', [False, True])
-def test_a_waiting_process_that_is_killed_is_an_error_that_stays(process, busy_pid, is_busy):
+def test_a_waiting_process_that_is_killed_is_an_error_that_stays(process, busy, is_busy):
     if is_busy:
-        process, pid, future = busy_pid(AMPLE, SPIN)
+        call, pid = busy(AMPLE, SPIN)
     os.kill(process._pid, signal.SIGKILL)
     if is_busy:
-        assert STARTER_ENDED in str(raised_by(future))
+        with pytest.raises(ProcessEndedError, match=STARTER_ENDED), call:
+            call.result()
         assert has_ended(pid)
     for _ in range(2):
         with pytest.raises(ProcessEndedError, match=STARTER_ENDED) as caught:
@@ -286,14 +280,14 @@ def test_without_descriptors_a_call_is_an_error_that_passes(process):
     assert process.call(AMPLE, pow, 2, 2) == 4
 
 
-def test_a_closed_process_ends_its_call(busy_pid):
-    process, pid, future = busy_pid(AMPLE, SPIN)
+def test_a_closed_process_ends_its_call(process, busy):
+    call, pid = busy(AMPLE, SPIN)
     waiting = process._pid
     process.close()
-    assert isinstance(raised_by(future), ProcessEndedError)
+    with pytest.raises(ProcessEndedError), call:
+        call.result()
     assert has_ended(pid)
     assert has_ended(waiting)
-    process.close()
 
 
 PARENT = """

@@ -104,15 +104,11 @@ def test_topics_of_gazebo_can_be_followed_and_changed(joints, tf):
     move(joints, tf, 'r2/j', 'r2', 0.75, 0.25)
 
 
-@pytest.mark.parametrize(('program', 'arguments'), [
-    ('start_bridge', ['-p', 'use_joint_states:=true', '-p', 'sdf_file:={folder}/robot.sdf']),
-    ('start_robot_state_publisher', ['-p', 'sdf_file:={folder}/shop.sdf']),
-])
-def test_a_model_file_and_robot_state_publisher_have_the_one_topic(
-        request, program, arguments, tmp_path, file, tf):
-    start = request.getfixturevalue(program)
-    start('--ros-args', '-r', f'__node:={BRIDGE[1:]}', *(
-        each.format(folder=tmp_path) for each in arguments)).wait_until_started()
+def test_robot_state_publisher_has_the_one_topic_in_a_world_too(
+        start_robot_state_publisher, file, tf):
+    start_robot_state_publisher(
+        '--ros-args', '-r', f'__node:={BRIDGE[1:]}', '-p', f'sdf_file:={file}',
+    ).wait_until_started()
     wait_for_topics(tf, '/joint_states')
 
 
