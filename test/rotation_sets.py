@@ -89,19 +89,21 @@ def half_turns(angle=math.pi):
     return np.column_stack((math.sin(0.5 * angle) * axes, np.full(len(axes), real)))
 
 
+def quaternion_from_halves(sines, cosines):
+    """Return a quaternion x y z w from sines and cosines of half of the angles of RPY."""
+    (sin_r, sin_p, sin_y), (cos_r, cos_p, cos_y) = sines, cosines
+    return (
+        sin_r * cos_p * cos_y - cos_r * sin_p * sin_y,
+        cos_r * sin_p * cos_y + sin_r * cos_p * sin_y,
+        cos_r * cos_p * sin_y - sin_r * sin_p * cos_y,
+        cos_r * cos_p * cos_y + sin_r * sin_p * sin_y,
+    )
+
+
 def extended_quaternions(rpy):
     """Convert RPY to quaternions in long double, with 64 bits of mantissa where it has them."""
     half = np.asarray(rpy, dtype=np.longdouble) * np.longdouble(0.5)
-    (sin_r, sin_p, sin_y), (cos_r, cos_p, cos_y) = np.sin(half).T, np.cos(half).T
-    return np.stack(
-        (
-            sin_r * cos_p * cos_y - cos_r * sin_p * sin_y,
-            cos_r * sin_p * cos_y + sin_r * cos_p * sin_y,
-            cos_r * cos_p * sin_y - sin_r * sin_p * cos_y,
-            cos_r * cos_p * cos_y + sin_r * sin_p * sin_y,
-        ),
-        axis=1,
-    )
+    return np.stack(quaternion_from_halves(np.sin(half).T, np.cos(half).T), axis=1)
 
 
 def largest_angle(quats_a, quats_b):
@@ -119,16 +121,8 @@ def largest_angle(quats_a, quats_b):
 def exact_quaternion(rpy):
     """Convert RPY to a quaternion with 50 digits."""
     with mpmath.workdps(50):
-        (sin_r, cos_r), (sin_p, cos_p), (sin_y, cos_y) = (
-            (mpmath.sin(half), mpmath.cos(half))
-            for half in (mpmath.mpf(float(angle)) / 2 for angle in rpy)
-        )
-        return (
-            sin_r * cos_p * cos_y - cos_r * sin_p * sin_y,
-            cos_r * sin_p * cos_y + sin_r * cos_p * sin_y,
-            cos_r * cos_p * sin_y - sin_r * sin_p * cos_y,
-            cos_r * cos_p * cos_y + sin_r * sin_p * sin_y,
-        )
+        halves = [mpmath.mpf(float(angle)) / 2 for angle in rpy]
+        return quaternion_from_halves(map(mpmath.sin, halves), map(mpmath.cos, halves))
 
 
 def exact_matrix(quat):

@@ -135,7 +135,6 @@ def is_in_window(element):
 @pytest.fixture(params=[(1366, 768), (800, 600)])
 def sized_page(page, request):
     page.size(*request.param)
-    page.run('new Promise(drawn => setTimeout(drawn, 300))')
     yield page
     page.size(1366, 768)
 
