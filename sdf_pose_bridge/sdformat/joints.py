@@ -8,7 +8,7 @@ Source: ``Joint::Load`` and ``JointAxis::Load`` of libsdformat 14.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 import math
 from typing import NamedTuple
 
@@ -16,8 +16,14 @@ from sdf_pose_bridge.errors import ElementMissingError, MimicError, ReservedName
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import JOINT_TYPES, Motion
-from sdf_pose_bridge.sdformat.values import number_of_child, numbers_of_child
-from sdf_pose_bridge.sdformat.xml_tree import attribute_of, first_child, value_of, XmlElement
+from sdf_pose_bridge.sdformat.values import number_of_child, numbers_of
+from sdf_pose_bridge.sdformat.xml_tree import (
+    attribute_of,
+    first_child,
+    first_children,
+    value_of,
+    XmlElement,
+)
 
 AXIS_TAGS = ('axis', 'axis2')
 """The tags of the axes of a joint."""
@@ -122,15 +128,15 @@ def joint_details_from_element(
     :return: its details. References are empty where they are missing or reserved.
     """
     joint_type = attribute_of(xml, 'type').lower()
-    has_thread = _has_dof(joint_type, Motion.SCREW)
+    children = first_children(xml)
+    parent, child = (
+        _end(xml, tag, children.get(tag), joint_type, sources) for tag in ('parent', 'child'))
     axis, axis2 = (
-        _axis(xml, tag, sources, reads_dynamics=reads_dynamics) for tag in AXIS_TAGS)
+        None if tag not in children else
+        _axis(xml, children[tag], sources, reads_dynamics=reads_dynamics) for tag in AXIS_TAGS)
     return JointDetails(
-        joint_type,
-        _end(xml, 'parent', joint_type, sources),
-        _end(xml, 'child', joint_type, sources),
-        (axis, axis2),
-        _screw_pitch_m(xml) if has_thread else 0.0)
+        joint_type, parent, child, (axis, axis2),
+        _screw_pitch_m(children) if _has_dof(joint_type, Motion.SCREW) else 0.0)
 
 
 def check_children_of_joint(xml: XmlElement, sources: Sources, tags: Sequence[str]) -> None:
@@ -140,8 +146,9 @@ def check_children_of_joint(xml: XmlElement, sources: Sources, tags: Sequence[st
             sources.error(ElementMissingError, xml, f'the joint has no <{tag}>')
 
 
-def _end(xml: XmlElement, tag: str, joint_type: str, sources: Sources) -> Reference:
-    element = first_child(xml, tag)
+def _end(
+    xml: XmlElement, tag: str, element: XmlElement | None, joint_type: str, sources: Sources,
+) -> Reference:
     if element is None and joint_type == 'ball':
         return Reference(DEFAULT_END)
     if element is None:
@@ -157,21 +164,20 @@ def _end(xml: XmlElement, tag: str, joint_type: str, sources: Sources) -> Refere
 
 
 def _axis(
-    joint: XmlElement, tag: str, sources: Sources, *, reads_dynamics: bool,
-) -> AxisDetails | None:
-    axis = first_child(joint, tag)
-    if axis is None:
-        return None
+    joint: XmlElement, axis: XmlElement, sources: Sources, *, reads_dynamics: bool,
+) -> AxisDetails:
+    children = first_children(axis)
     expressed_in = _NO_REFERENCE
-    xyz = first_child(axis, 'xyz')
-    if xyz is not None and xyz.attrib:
+    xyz = children.get('xyz')
+    if xyz is not None and xyz.keys():
         expressed_in = Reference(attribute_of(xyz, 'expressed_in'), sources.line(xyz))
-    x, y, z = numbers_of_child(axis, 'xyz', (0.0, 0.0, 1.0))
+    x, y, z = numbers_of(xyz, (0.0, 0.0, 1.0))
     lower, upper = -math.inf, math.inf
-    limit = first_child(axis, 'limit')
+    limit = children.get('limit')
     if limit is not None:
-        lower = number_of_child(limit, 'lower', lower)
-        upper = number_of_child(limit, 'upper', upper)
+        limits = first_children(limit)
+        (lower,) = numbers_of(limits.get('lower'), (lower,))
+        (upper,) = numbers_of(limits.get('upper'), (upper,))
         if any(map(_may_be_degrees, (lower, upper))) and _has_dof(
                 attribute_of(joint, 'type').lower(), Motion.TURN):
             msg = (f'the limits {lower:g} to {upper:g} of joint "{attribute_of(joint, "name")}" '
@@ -180,7 +186,7 @@ def _axis(
     dynamics = _dynamics(axis) if reads_dynamics else ()
     return AxisDetails(
         JointAxis((x, y, z), lower, upper, None, *dynamics), expressed_in,
-        _mimic(joint, axis, tag, sources))
+        _mimic(joint, axis, children.get('mimic'), sources))
 
 
 def _has_dof(joint_type: str, motion: Motion) -> bool:
@@ -202,9 +208,8 @@ def _dynamics(axis: XmlElement) -> Sequence[float]:
 
 
 def _mimic(
-    joint: XmlElement, axis: XmlElement, tag: str, sources: Sources,
+    joint: XmlElement, axis: XmlElement, xml: XmlElement | None, sources: Sources,
 ) -> MimicDetails | None:
-    xml = first_child(axis, 'mimic')
     if xml is None:
         return None
     leader = attribute_of(xml, 'joint')
@@ -212,7 +217,7 @@ def _mimic(
     msg = ''
     if leader_tag not in AXIS_TAGS:
         msg = f'mimic axis="{leader_tag}" must be one of {", ".join(AXIS_TAGS)}'
-    elif leader and (leader, leader_tag) == (attribute_of(joint, 'name'), tag):
+    elif leader and (leader, leader_tag) == (attribute_of(joint, 'name'), axis.tag):
         msg = 'an axis cannot mimic itself'
     if msg:
         sources.error(MimicError, xml, msg)
@@ -223,15 +228,15 @@ def _mimic(
         number_of_child(xml, 'reference', 0.0))
 
 
-def _screw_pitch_m(joint: XmlElement) -> float:
+def _screw_pitch_m(children: Mapping[object, XmlElement]) -> float:
     """
     Return how far a screw joint moves in one turn.
 
     ``<thread_pitch>``, which older files have, is in radians per metre and positive for a
     left-handed thread.
     """
-    if first_child(joint, 'screw_thread_pitch') is None and (
-            first_child(joint, 'thread_pitch') is not None):
-        rad_per_m = number_of_child(joint, 'thread_pitch', 1.0)
+    if 'thread_pitch' in children and 'screw_thread_pitch' not in children:
+        (rad_per_m,) = numbers_of(children['thread_pitch'], (1.0,))
         return -2.0 * math.pi / rad_per_m if rad_per_m else 0.0
-    return number_of_child(joint, 'screw_thread_pitch', 1.0)
+    (pitch_m,) = numbers_of(children.get('screw_thread_pitch'), (1.0,))
+    return pitch_m

@@ -65,8 +65,6 @@ def pose_format_of(xml: XmlElement) -> PoseFormat:
 
     :raises PoseTextError: if ``rotation_format`` or ``degrees`` is not valid.
     """
-    if not xml.keys():
-        return EULER_RPY
     rotation_format = attribute_of(xml, 'rotation_format')
     pose_format = PoseFormat(
         rotation_format == 'quat_xyzw', boolean_from_text(xml.get('degrees', '')) is True)

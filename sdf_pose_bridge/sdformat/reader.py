@@ -9,7 +9,7 @@ a value is checked, and an unknown element is skipped.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from itertools import takewhile
 from typing import Any, NamedTuple
@@ -218,7 +218,7 @@ class _Reader:
         value = definition.value
         if value is not None:
             if definition.is_pose:
-                self._read_pose(xml, definition, scope, parent)
+                self._read_pose(xml, attributes, definition, scope, parent)
             else:
                 fault, doubt = judged_value(text_of(xml), value)
                 if fault:
@@ -326,12 +326,14 @@ class _Reader:
                 self._sources.error(error, xml, msg)
 
     def _read_pose(
-        self, xml: XmlElement, definition: Definition, scope: _Scope, parent: int,
+        self, xml: XmlElement, attributes: Sequence[str], definition: Definition, scope: _Scope,
+        parent: int,
     ) -> None:
         """Keep the pose of an element, or check another pose."""
         text, pose_format = text_of(xml), EULER_RPY
         try:
-            pose_format = pose_format_of(xml)
+            if attributes:
+                pose_format = pose_format_of(xml)
             numbers, doubt = pose_numbers_from_text(text, pose_format)
         except PoseTextError as error:
             self._sources.error(ElementInvalidError, xml, str(error))
@@ -346,7 +348,7 @@ class _Reader:
         elif parent in table.pose_lines:
             self._sources.warning(xml, 'a second <pose> is ignored; the first one counts')
         else:
-            if xml.keys():
+            if attributes:
                 self._read_relative_to(xml, definition, table, parent)
             table.set_pose(parent, text, numbers, pose_format, self._sources.line(xml))
 
@@ -370,8 +372,9 @@ class _Reader:
 # Details of some kinds
 
 def _model_details(xml: XmlElement) -> ModelDetails:
+    static = next(child_elements(xml, 'static'), None)
     return ModelDetails(
-        boolean_from_text(value_at(xml, 'static')) is True,
+        static is not None and boolean_from_text(text_of(static)) is True,
         frame_of_attribute(xml, 'canonical_link'), frame_of_attribute(xml, 'placement_frame'),
         tuple(
             etree.tostring(child, encoding='unicode', pretty_print=True, with_tail=False).rstrip()

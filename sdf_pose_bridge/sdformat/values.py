@@ -19,7 +19,8 @@ from sdf_pose_bridge.sdformat.grammar import Item, ValueType
 from sdf_pose_bridge.sdformat.specification import Choice
 from sdf_pose_bridge.sdformat.xml_tree import (
     attribute_of,
-    value_at,
+    child_at,
+    text_of,
     WHITE_SPACE,
     XmlElement,
 )
@@ -46,6 +47,7 @@ _PLAIN_VALUES = {
 }
 """Valid values of the most frequent types, checked first because most are of these forms."""
 _DECIMAL_CHARACTERS = f'0123456789+-.{WHITE_SPACE}'
+_WORD = re.compile(f'[^{WHITE_SPACE}]+')
 _LONG_EXPONENT = re.compile(r'[eE][+-]?[0-9]{3}')
 _LONGEST_PLAIN = 200
 """
@@ -131,6 +133,8 @@ def doubt_about_numbers(text: str, numbers: Sequence[float]) -> str:
 
     :return: empty if they are those that are written, or if the text is blank.
     """
+    if plain_numbers_from_text(text) == numbers:
+        return ''
     words = words_of(text)
     try:
         written = [*map(float, words)]
@@ -146,7 +150,7 @@ def doubt_about_numbers(text: str, numbers: Sequence[float]) -> str:
 
 def words_of(text: str) -> list[str]:
     """Split a text at white space, of which SDFormat has less than Python."""
-    return re.findall(f'[^{WHITE_SPACE}]+', text)
+    return _WORD.findall(text)
 
 
 def is_representable(text: str, number: float) -> bool:
@@ -219,11 +223,11 @@ def numbers_from_text(text: str, value_type: ValueType) -> Sequence[float]:
 def plain_numbers_from_text(text: str) -> Sequence[float]:
     """Return the numbers of a text that all readers read alike; none for other texts."""
     others = text.strip(_DECIMAL_CHARACTERS)
-    if len(text) >= _LONGEST_PLAIN or others.strip(_DECIMAL_CHARACTERS + 'eE') or (
-            others and _LONG_EXPONENT.search(text)):
+    if len(text) >= _LONGEST_PLAIN or (others and (
+            others.strip(_DECIMAL_CHARACTERS + 'eE') or _LONG_EXPONENT.search(text))):
         return ()
     try:
-        return [float(word) for word in text.split()]
+        return [*map(float, text.split())]
     except ValueError:
         return ()
 
@@ -276,8 +280,14 @@ def numbers_of_child(
     :param default: the numbers if there is no child, or if it has fewer numbers than these.
     :return: as many numbers as there are in the default.
     """
-    text = value_at(parent, path)
-    numbers = tuple(numbers_from_text(text, _TYPES_BY_COUNT[len(default)]))
+    return numbers_of(child_at(parent, path), default)
+
+
+def numbers_of(xml: XmlElement | None, default: tuple[float, ...]) -> tuple[float, ...]:
+    """Return the numbers in an element that may be missing, as :func:`numbers_of_child`."""
+    if xml is None:
+        return default
+    numbers = tuple(numbers_from_text(text_of(xml), _TYPES_BY_COUNT[len(default)]))
     return numbers if len(numbers) == len(default) else default
 
 

@@ -49,6 +49,11 @@ def first_child(xml: XmlElement, tag: str) -> XmlElement | None:
     return None
 
 
+def first_children(xml: XmlElement) -> dict[object, XmlElement]:
+    """Return the first child element with each tag."""
+    return {child.tag: child for child in reversed(xml)}
+
+
 def written_tag(xml: XmlElement) -> str:
     """Return the tag of an element as it is written, with its prefix."""
     tag = str(xml.tag)
@@ -105,16 +110,26 @@ def value_of(xml: XmlElement) -> str:
     return text if text.isidentifier() else _WHITE_SPACE_RUN.sub(' ', text).strip(' ')
 
 
-def value_at(parent: XmlElement, path: str, default: str = '') -> str:
+def child_at(parent: XmlElement, path: str) -> XmlElement | None:
     """
-    Return :func:`value_of` a child element, or of a child of a child.
+    Return a child element, or a child of a child; None if there is none.
 
     :param path: its tags, such as ``mass`` or ``limit/lower``; of each, the first child counts.
-    :param default: the value if there is no such element.
     """
     xml: XmlElement | None = parent
     for tag in path.split('/'):
         xml = None if xml is None else first_child(xml, tag)
+    return xml
+
+
+def value_at(parent: XmlElement, path: str, default: str = '') -> str:
+    """
+    Return :func:`value_of` a child element, or of a child of a child.
+
+    :param path: as for :func:`child_at`.
+    :param default: the value if there is no such element.
+    """
+    xml = child_at(parent, path)
     return default if xml is None else value_of(xml)
 
 
