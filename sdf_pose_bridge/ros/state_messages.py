@@ -364,21 +364,19 @@ class Effects:
             if dofs and effect.older_count >= _LEAST_OLDER:
                 nodes = source.publishers()
                 if len(nodes) > 1:
-                    places = f'{names_in_line(nodes)} on {source.name}'
-                    found[source.name] = places, dofs[0], source
+                    found[source.name] = f', among {names_in_line(nodes)}', dofs[0], source
             effect.message_count = effect.older_count = 0
         for dof, by_name in sources.items():
             if len(by_name) > 1:
-                places = ' and '.join(sorted(by_name))
-                found.setdefault(places, (places, dof, by_name.popitem()[1]))
+                found.setdefault(' and '.join(sorted(by_name)), ('', dof, by_name.popitem()[1]))
         self._lines_about_publishers = []
-        for topics, (places, dof, source) in found.items():
+        for topics, (nodes_of_topic, dof, source) in found.items():
             what, setting = ('model', 'model_pose_topics') if self._positions.is_model(dof) else (
                 'joint', 'joint_states_topics')
             line = (
                 f'messages about {what} {names_in_line([self._positions.names[dof]])} come from '
-                f'several publishers at once, {places}; the newest stamp counts, so stop all but '
-                f'one, or leave a topic out of {setting}')
+                f'several publishers at once on {topics}{nodes_of_topic}; the newest stamp '
+                f'counts, so stop all but one, or leave a topic out of {setting}')
             self._lines_about_publishers.append(line)
             source.warn_once('publishers', [topics], partial(str, line))
 

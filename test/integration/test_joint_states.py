@@ -167,9 +167,8 @@ def test_two_publishers_of_a_joint_are_in_the_log_and_in_diagnostics_until_one_i
         return monitor.status.level == level
 
     tf.listener.wait(lambda: is_at(DiagnosticStatus.WARN), lambda: monitor.status)
-    words = 'messages about joint "turn" come from several publishers at once, "/'
-    assert monitor.status.message.startswith(words)
-    assert '"/test_listener", "/test_listener" on /joint_states;' in monitor.status.message
+    words = 'about joint "turn" come from several publishers at once on /joint_states, among "/'
+    assert words in monitor.status.message
     other.node.destroy_publisher(others.pop())
     tf.listener.wait(lambda: is_at(DiagnosticStatus.OK), lambda: monitor.status)
     assert sum(words in line for line in bridge.lines) == 1

@@ -80,7 +80,7 @@ def test_the_newest_of_two_sources_counts(bridge, tf):
         tf.listener, simulator=SIMULATOR, model_pose_topics=['/tracker/{model}/pose'])
     tf.listener.wait(lambda: 'cart/deck' in tf.last, lambda: tf.last)
     tracker.sec = simulator.sec + 1000
-    words = f'"cart" come from several publishers at once, {SIMULATOR}/get_entities_states and'
+    words = f'"cart" come from several publishers at once on {SIMULATOR}/get_entities_states and'
 
     def is_told():
         tracker.move(4.0)

@@ -171,7 +171,7 @@ TURNS = [('poses', number, 'a') for number in (7, 1, 8, 2, 9, 3)]
 
 
 def test_publishers_of_one_model_on_two_topics_are_reported_as_long_as_it_lasts(look, capfd):
-    line = 'messages about model "a" come from several publishers at once, /alone and /poses; '
+    line = 'messages about model "a" come from several publishers at once on /alone and /poses; '
     assert not look(BOTH)
     found = look(BOTH)
     assert len(found) == 1
@@ -182,7 +182,7 @@ def test_publishers_of_one_model_on_two_topics_are_reported_as_long_as_it_lasts(
 
 
 def test_publishers_of_one_model_on_one_topic_are_reported(look):
-    line = 'messages about model "a" come from several publishers at once, "/other", "/other" on'
+    line = 'messages about model "a" come from several publishers at once on /poses, among "/'
     found = look(TURNS)
     assert len(found) == 1
     assert found[0].startswith(line)
