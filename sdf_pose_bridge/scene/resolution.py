@@ -34,6 +34,7 @@ from sdf_pose_bridge.sdformat.inertials import Inertial, moments_from_matrix, mo
 from sdf_pose_bridge.sdformat.joints import JointAxis, Mimic
 
 _Details = TypeVar('_Details')
+_NO_AXIS = JointAxis((0.0, 0.0, 1.0))
 
 
 def scene_from_graph(
@@ -106,13 +107,14 @@ def _joint(
     axes = []
     for written, (expressed_in, leader) in zip(details.axes, ends.axes, strict=True):
         if written is None:
-            axes.append(JointAxis((0.0, 0.0, 1.0)))
+            axes.append(_NO_AXIS)
             continue
-        axis, leader = written.axis, new_index_of[leader]
-        axes.append(axis._replace(
-            xyz=_axis_in_joint(axis.xyz, expressed_in, ends.joint, poses),
-            mimic=None if written.mimic is None or leader == NO_ELEMENT else Mimic(
-                leader, *written.mimic[1:])))
+        xyz, lower, upper, _, *dynamics = written.axis
+        leader = new_index_of[leader]
+        mimic = None if written.mimic is None or leader == NO_ELEMENT else Mimic(
+            leader, *written.mimic[1:])
+        axes.append(JointAxis(
+            _axis_in_joint(xyz, expressed_in, ends.joint, poses), lower, upper, mimic, *dynamics))
     return Joint(
         new_index_of[ends.joint], details.type, new_index_of[ends.parent],
         new_index_of[ends.child], (axes[0], axes[1]), details.screw_pitch_m)

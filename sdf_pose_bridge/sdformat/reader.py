@@ -34,7 +34,7 @@ from sdf_pose_bridge.sdformat.elements import (
     NO_ELEMENT,
     SensorDetails,
 )
-from sdf_pose_bridge.sdformat.grammar import Definition, definition_of, Kind
+from sdf_pose_bridge.sdformat.grammar import Definition, definition_of, Item, Kind
 from sdf_pose_bridge.sdformat.inertials import inertial_from_element
 from sdf_pose_bridge.sdformat.joints import check_children_of_joint, joint_details_from_element
 from sdf_pose_bridge.sdformat.poses import (
@@ -108,7 +108,10 @@ def is_valid_element(xml: XmlElement, definition: Definition, sources: Sources) 
     """
     part = sources.with_own_problems()
     reader = _Reader(part)
-    reader.read(xml, definition, reader.top)
+    if definition.value is None:
+        reader.read(xml, definition, reader.top)
+    else:
+        reader.read_value(xml, definition, definition.value, reader.top, NO_ELEMENT)
     part.problems.extend_parent()
     return not part.problems.errors
 
@@ -208,27 +211,13 @@ class _Reader:
         depth: int = 1,
     ) -> None:
         """
-        Read an element and its content.
+        Read an element with content.
 
         :param parent: index of its parent element; -1 if this has no frame.
         """
         attributes = xml.keys()
         if attributes or definition.has_required_attributes:
             self._check_attributes(xml, attributes, definition, is_checked=scope.is_checked)
-        value = definition.value
-        if value is not None:
-            if definition.is_pose:
-                self._read_pose(xml, attributes, definition, scope, parent)
-            else:
-                fault, doubt = judged_value(text_of(xml), value)
-                if fault:
-                    self._sources.error(
-                        ElementInvalidError, xml, f'{_described_value(xml)} {fault}')
-                elif doubt:
-                    self._sources.warning(xml, f'{_described_value(xml)} {doubt}')
-            for child in xml:
-                self._undefined.report_element(child, definition)
-            return
         element = NO_ELEMENT
         if definition.kind is not None:
             element, scope = self._added(xml, definition, definition.kind, scope, parent)
@@ -248,8 +237,31 @@ class _Reader:
             if child_definition is None:
                 if not (definition.takes_any_children or is_checked):
                     self._undefined.report_element(child, definition)
-            elif not is_checked or child_definition.concerns_frames:
+            elif is_checked and not child_definition.concerns_frames:
+                pass
+            elif child_definition.value is None:
                 self.read(child, child_definition, scope, element, depth + 1)
+            else:
+                self.read_value(child, child_definition, child_definition.value, scope, element)
+
+    def read_value(
+        self, xml: XmlElement, definition: Definition, rule: Item, scope: _Scope, parent: int,
+    ) -> None:
+        """Read an element that has a value instead of content."""
+        attributes = xml.keys()
+        if attributes or definition.has_required_attributes:
+            self._check_attributes(xml, attributes, definition, is_checked=scope.is_checked)
+        if definition.is_pose:
+            self._read_pose(xml, attributes, definition, scope, parent)
+        else:
+            fault, doubt = judged_value(text_of(xml), rule)
+            if fault:
+                self._sources.error(ElementInvalidError, xml, f'{_described_value(xml)} {fault}')
+            elif doubt:
+                self._sources.warning(xml, f'{_described_value(xml)} {doubt}')
+        if len(xml):
+            for child in xml:
+                self._undefined.report_element(child, definition)
 
     def _added(
         self, xml: XmlElement, definition: Definition, kind: Kind, scope: _Scope, parent: int,

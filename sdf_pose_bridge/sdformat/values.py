@@ -48,6 +48,7 @@ _PLAIN_VALUES = {
 """Valid values of the most frequent types, checked first because most are of these forms."""
 _DECIMAL_CHARACTERS = f'0123456789+-.{WHITE_SPACE}'
 _WORD = re.compile(f'[^{WHITE_SPACE}]+')
+_NUMBER_CHARACTERS = f'{_DECIMAL_CHARACTERS}eE'
 _LONG_EXPONENT = re.compile(r'[eE][+-]?[0-9]{3}')
 _LONGEST_PLAIN = 200
 """
@@ -224,7 +225,7 @@ def plain_numbers_from_text(text: str) -> Sequence[float]:
     """Return the numbers of a text that all readers read alike; none for other texts."""
     others = text.strip(_DECIMAL_CHARACTERS)
     if len(text) >= _LONGEST_PLAIN or (others and (
-            others.strip(_DECIMAL_CHARACTERS + 'eE') or _LONG_EXPONENT.search(text))):
+            others.strip(_NUMBER_CHARACTERS) or _LONG_EXPONENT.search(text))):
         return ()
     try:
         return [*map(float, text.split())]
