@@ -50,6 +50,7 @@ def start_busy_call(process, pipe):
     def start(allowance, code):
         code = f'import os; os.write({writer}, b"%d" % os.getpid())\n{code}'
         call = process.start(allowance, exec, code, {})
+        assert select.select([reader], [], [], DEADLINE_S)[0], 'the call does not begin'
         return call, int(os.read(reader, 20))
     return start
 
