@@ -115,11 +115,6 @@ def test_elements_of_other_places_are_not_read():
     assert inertial == Inertial(1.0, (1.0, 1.0, 1.0, 0.0, 0.0, 0.0))
 
 
-def test_added_mass_is_no_mass():
-    content = '<inertial><mass>2</mass><fluid_added_mass><xx>5</xx></fluid_added_mass></inertial>'
-    assert inertial_of(content).mass_kg == 2.0
-
-
 # Automatic ones that cannot be computed
 
 REFUSED = {
@@ -156,9 +151,11 @@ def test_automatic_inertial_in_an_actor_needs_no_collisions():
 ])
 def test_written_pose_is_ignored_unless_there_is_a_mesh(shape, x, words):
     scene = load_text(link_with(
-        '<inertial auto="true"><pose>3 0 0 0 0 0</pose></inertial>' + collision('c', 1, shape)))
+        '<inertial auto="true"><pose>3 0 0 0 0 0</pose></inertial>' + collision('c', 1, shape)
+        + collision('d', 1, UNIT_BOX)))
     assert scene.pose('m::l::inertial').x == x
     assert words in scene.warnings[-1].message
+    assert bool(scene.inertials) is ('mesh' not in shape)
 
 
 # Centers of mass
@@ -264,11 +261,6 @@ def test_given_mass_scales_the_moments():
     content = f'<inertial auto="true"><mass>24</mass></inertial>{box}'
     assert inertial_of(content).mass_kg == pytest.approx(24.0)
     assert moments_of(content) == (26.0, 20.0, 10.0, 0.0, 0.0, 0.0)
-
-
-def test_automatic_inertial_of_a_mesh_is_not_known():
-    scene = load_text(link_with(AUTO + collision('c', 1, '<mesh><uri>a</uri></mesh>')))
-    assert scene.inertials == {}
 
 
 def test_masses_are_read_on_request_only():

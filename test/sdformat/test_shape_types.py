@@ -8,13 +8,12 @@ from sdf_texts import link_with
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
-from sdf_pose_bridge.sdformat.shape_types import Primitive, SHAPE_TYPES
+from sdf_pose_bridge.sdformat.shape_types import SHAPE_TYPES
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.visual_markers import visual_markers_from_scene
 
 SIZES_M = (0.7, 1.1, 1.3)
 WITH_SURFACE = [name for name, each in SHAPE_TYPES.items() if each.surface is not None]
-WITH_PARTS = [name for name, each in SHAPE_TYPES.items() if each.parts is not None]
 WITH_SOLID = [name for name, each in SHAPE_TYPES.items() if each.solid is not None]
 
 
@@ -127,21 +126,6 @@ def test_marker_extends_as_far_as_the_surface(name):
         for marker in markers]
     np.testing.assert_allclose(
         extent_of(np.concatenate(ends)), extent_of(surface_of(name)[0]), rtol=1e-12)
-
-
-@pytest.mark.parametrize(('name', 'primitives'), [
-    ('box', [Primitive.BOX]),
-    ('capsule', [Primitive.CYLINDER, Primitive.ELLIPSOID, Primitive.ELLIPSOID]),
-    ('cylinder', [Primitive.CYLINDER]),
-    ('ellipsoid', [Primitive.ELLIPSOID]),
-    ('sphere', [Primitive.ELLIPSOID]),
-])
-def test_primitives_of_parts(name, primitives):
-    assert [part.primitive for part in parts_of(name)] == primitives
-
-
-def test_each_type_with_parts_is_tested():
-    assert WITH_PARTS == ['box', 'capsule', 'cylinder', 'ellipsoid', 'sphere']
 
 
 # What is special about one type

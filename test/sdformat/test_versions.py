@@ -24,8 +24,8 @@ from sdf_pose_bridge.sdformat.versions import version_numbers
 
 
 @pytest.mark.parametrize('version', [
-    '', '1', '1.0', '1.1', '1.13', '2.0', '0.9', '1.6.0', ' 1.9 ', '1.9 ', '1.09', '01.9',
-    'latest', 'one', '1.x', '-1.9', '1.-9', '1,9', '١.٩', '\u0661.9', '1.' + '9' * 5000,
+    '', '1', '1.1', '1.13', '2.0', '1.6.0', ' 1.9 ', '1.09', 'latest', '-1.9', '\u0661.9',
+    '1.' + '9' * 5000,
 ])
 def test_version_that_does_not_exist_is_refused(version):
     assert codes_of(model_file(LINK, version=version)) == ['CONVERSION_ERROR']
@@ -39,8 +39,7 @@ def test_every_version_is_read_with_the_newest_grammar(minor):
 
 
 @pytest.mark.parametrize(('text', 'numbers'), [
-    ('1.10', (1, 10)), ('1', (1,)), ('1.9.2', (1, 9, 2)), ('', ()), ('1.', ()), ('1.x', ()),
-    ('-1.9', ()), ('\u0661.9', ()), ('1.' + '9' * 5000, ()),
+    ('1.10', (1, 10)), ('', ()), ('1.x', ()), ('\u0661.9', ()), ('1.' + '9' * 5000, ()),
 ])
 def test_numbers_of_a_version(text, numbers):
     assert version_numbers(text) == numbers

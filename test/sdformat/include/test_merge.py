@@ -177,11 +177,6 @@ def test_placement_frame_of_the_file_places_the_merged_elements(scene_of, frame)
     assert_at(scene_of(in_model(include()), arm=text), f'm::{name}', (5, 0, 0))
 
 
-def test_name_of_the_include_is_in_the_name_of_the_proxy_frame(scene_of):
-    scene = scene_of(in_model(include('<name>left</name>')))
-    assert 'm::_merged__left__model__' in scene.names
-
-
 def test_proxy_frame_can_be_referred_to(scene_of):
     scene = scene_of(in_model(include() + posed('frame', 'g', '1 0 0 0 0 0', PROXY)))
     assert_at(scene, 'm::g', (1, 0, 1))

@@ -56,13 +56,11 @@ def errors(write, tmp_path):
 
 @pytest.mark.parametrize(('params', 'code'), [
     ('<link/>', 'ATTRIBUTE_MISSING'),
-    ('<link action="remove"/>', 'ATTRIBUTE_MISSING'),
     ('<link element_id="base::" action="remove"/>', 'ATTRIBUTE_INVALID'),
     ('<link element_id="base" action="change"/>', 'ATTRIBUTE_INVALID'),
     ('<link element_id="base" action=""/>', 'ATTRIBUTE_INVALID'),
     ('<link element_id="none" action="remove"/>', 'ELEMENT_MISSING'),
     ('<visual element_id="base" action="remove"/>', 'ELEMENT_MISSING'),
-    ('<frame element_id="gripper::tip" action="remove"/>', 'ELEMENT_MISSING'),
     ('<frame element_id="" action="add"/>', 'ATTRIBUTE_MISSING'),
     ('<frame element_id="" name="" action="add"/>', 'ATTRIBUTE_INVALID'),
     ('<frame element_id="none" name="f" action="add"/>', 'ELEMENT_MISSING'),
@@ -90,8 +88,6 @@ def test_wrong_parameter_of_an_element_gives_one_error(errors, params, code):
     ('<pose>0 0 0 0 0 0</pose>', 'ATTRIBUTE_MISSING'),
     ('<pose action="change"/>', 'ATTRIBUTE_INVALID'),
     ('<inertial action="remove"/>', 'ELEMENT_MISSING'),
-    ('<inertial action="modify"/>', 'ELEMENT_MISSING'),
-    ('<inertial action="replace"/>', 'ELEMENT_MISSING'),
     ('<visual name="none" action="remove"/>', 'ELEMENT_MISSING'),
     ('<visual action="replace"/>', 'ATTRIBUTE_MISSING'),
     ('<joint name="j" action="add"/>', 'ELEMENT_INVALID'),

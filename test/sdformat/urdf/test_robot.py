@@ -133,8 +133,9 @@ def test_links_in_a_cycle_are_left_out_with_a_warning():
     assert 'its joints form a cycle' in scene.warnings[0].message
 
 
-def test_joint_gets_another_name_than_its_link_and_its_link_keeps_it():
-    scene = load_text(robot(TWO + joint('b', 'a', 'b', 'continuous', origin('1 0 0'))))
+@pytest.mark.parametrize('joint_type', ['continuous', 'fixed'])
+def test_joint_gets_another_name_than_its_link_and_its_link_keeps_it(joint_type):
+    scene = load_text(robot(TWO + joint('b', 'a', 'b', joint_type, origin('1 0 0'))))
     assert scene.names[scene.joints[0].element] == 'r::b_joint'
     assert scene.pose('r::b').x == 1.0
     (warning,) = scene.warnings
@@ -159,11 +160,6 @@ def test_mimic_follows_a_joint_that_is_renamed():
         TWO + link('c') + joint('b', 'a', 'b', 'continuous', '<axis xyz="0 0 1"/>')
         + joint('k', 'a', 'c', 'continuous', '<axis xyz="0 0 1"/><mimic joint="b"/>')))
     assert scene_at_positions(scene, {'b': np.pi}).pose('r::c').qz == pytest.approx(1.0)
-
-
-def test_fixed_joint_of_the_name_of_its_link_leaves_two_frames():
-    scene = load_text(robot(TWO + joint('b', 'a', 'b', 'fixed', origin('1 0 0'))))
-    assert scene.pose('r::b') == scene.pose('r::b_joint')
 
 
 def test_robot_may_have_the_name_of_its_link():
