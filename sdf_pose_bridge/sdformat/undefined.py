@@ -9,7 +9,7 @@ libsdformat warns of the same ones in SDFormat (``readXml`` and ``readAttributes
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from itertools import filterfalse
 
 from sdf_pose_bridge.names import NameIndex
@@ -47,8 +47,7 @@ class UndefinedReporter:
         self._sources = sources
         self._root = root
         self._hints = _HINTS if root == 'sdf' else {}
-        self._nearest: dict[tuple[str, str, str], str] = {}
-        self._places: dict[tuple[str, str], str] = {}
+        self._found_hints: dict[tuple[str, str], str] = {}
 
     def report_element(self, xml: XmlElement, parent: Definition) -> None:
         """
@@ -71,10 +70,10 @@ class UndefinedReporter:
         # <ode> and some others have several definitions, each in another element.
         place = f'<{parent_tag}>' if outer is None or parent.identifier in (
             parent_tag, f'urdf_{parent_tag}') else f'<{parent_tag}> of <{written_tag(outer)}>'
-        likely = f'it is an attribute: {tag}="..."' if tag in parent.attributes else (
-            self._place_of(tag, parent, parent_xml))
-        hint = self._hint(parent, tag) or likely or self._did_you_mean(
-            tag, parent.identifier, map(str, parent.children), '<{}>')
+        likely = f'it is an attribute: {tag}="..."' if tag in parent.attributes else ''
+        hint = self._hint(parent, tag) or likely or self._found_hint(
+            parent, tag, lambda: self._place_of(tag, parent, parent_xml) or _did_you_mean(
+                tag, map(str, parent.children), '<{}>'))
         self._warn(xml, f'<{tag}> in {place}', hint)
 
     def report_attribute(self, name: str, xml: XmlElement, definition: Definition) -> None:
@@ -83,8 +82,9 @@ class UndefinedReporter:
         if ':' in name or '{' in name or self._is_only_counted():
             return
         likely = f'it is an element: <{name}>' if name in definition.children else ''
-        hint = self._hint(definition, f'@{name}') or likely or self._did_you_mean(
-            name, definition.identifier, definition.attributes, '{}') or _choice_of(definition)
+        hint = self._hint(definition, f'@{name}') or likely or self._found_hint(
+            definition, f'@{name}', lambda: _did_you_mean(name, definition.attributes, '{}')
+        ) or _choice_of(definition)
         self._warn(xml, f'{name}="{xml.get(name)}" of <{written_tag(xml)}>', hint)
 
     def report_tree(self, xml: XmlElement, definition: Definition) -> None:
@@ -112,21 +112,24 @@ class UndefinedReporter:
     def _hint(self, definition: Definition, name: str) -> str:
         return self._hints.get(f'{definition.identifier}/{name}') or self._hints.get(name, '')
 
+    def _found_hint(self, definition: Definition, name: str, find: Callable[[], str]) -> str:
+        """Return a hint that takes long to find; most undefined names of a file are repeated."""
+        key = definition.identifier, name
+        if key not in self._found_hints and self._sources.problems.allows_hint():
+            self._found_hints[key] = find()
+        return self._found_hints.get(key, '')
+
     def _place_of(self, tag: str, parent: Definition, parent_xml: XmlElement) -> str:
         """Return where an element can stand: in a child of its parent, or in an outer element."""
-        key = parent.identifier, tag
-        if key not in self._places and self._sources.problems.allows_hint():
-            holders = [*_inner_holders(tag, [parent]), *self._outer_holder(tag, parent_xml)]
-            level, known = [parent], set[str]()
-            while level and not holders:
-                level = [
-                    child for each in level for child in _inner_definitions(each).values()
-                    if child.identifier not in known]
-                known.update(child.identifier for child in level)
-                holders = _inner_holders(tag, level)
-            self._places[key] = ' or '.join(holders)
-        place = self._places.get(key, '')
-        return f'it can stand in {place}' if place else ''
+        holders = [*_inner_holders(tag, [parent]), *self._outer_holder(tag, parent_xml)]
+        level, known = [parent], set[str]()
+        while level and not holders:
+            level = [
+                child for each in level for child in _inner_definitions(each).values()
+                if child.identifier not in known]
+            known.update(child.identifier for child in level)
+            holders = _inner_holders(tag, level)
+        return f'it can stand in {" or ".join(holders)}' if holders else ''
 
     def _outer_holder(self, tag: str, xml: XmlElement) -> list[str]:
         """Return the nearest element around an element that can hold another one."""
@@ -141,13 +144,10 @@ class UndefinedReporter:
             definition = definition.children.get(outer.tag)
         return holders
 
-    def _did_you_mean(self, name: str, parent: str, names: Iterable[str], form: str) -> str:
-        # Most undefined elements of a file have one of a few names.
-        key = form, parent, name
-        if key not in self._nearest and self._sources.problems.allows_hint():
-            self._nearest[key] = NameIndex(names).nearest(name)
-        nearest = self._nearest.get(key, '')
-        return f'did you mean {form.format(nearest)}?' if nearest else ''
+
+def _did_you_mean(name: str, names: Iterable[str], form: str) -> str:
+    nearest = NameIndex(names).nearest(name)
+    return f'did you mean {form.format(nearest)}?' if nearest else ''
 
 
 def _choice_of(definition: Definition) -> str:
