@@ -32,8 +32,8 @@ class Worker:
 
     def __init__(self, node: Node, name: str) -> None:
         self.between: Callable[[], float] = lambda: math.inf
-        """Is called before each wait for a function, the first one excepted; returns the longest
-        time in s of this wait."""
+        """Is called after each function and each wait; returns the longest time in s to wait for
+        the next function."""
         self.has_to_end = False
         """Whether the thread has to end; a function that takes long looks at it."""
         self._executor = node.executor

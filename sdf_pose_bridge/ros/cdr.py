@@ -40,8 +40,8 @@ _FORMATS = {
         struct.Struct(f'{order}iII'), struct.Struct(f'{order}I'), np.dtype(f'{order}f8'),
         struct.Struct(f'{order}7d'))
     for begin, order in ((b'\0\0', '>'), (b'\0\1', '<'))}
-"""Those of a stamp with a length, a length, a number and a pose in plain CDR, by the first two
-bytes of a message."""
+"""The formats of a stamp with a length, of a length, a number and a pose, by the first two bytes
+of a message, which give the order of bytes."""
 
 MOST_BYTES = 1_000_000
 """Largest size of a message that is read; other callbacks wait meanwhile."""
@@ -52,10 +52,10 @@ _START = 4
 
 class StampedRecords:
     """
-    Serialized records of a stamp, frame ids and seven numbers, of which messages consist.
+    Serialized records, each with a stamp, frame ids and seven numbers; messages consist of them.
 
-    :param ids: for transforms the parent frame of each, and the child frame of each; for poses
-        only the frame that each is given in.
+    :param ids: the frame ids of all records, field by field: for transforms the parents, then the
+        children; for poses the frames in which they are given.
     :param poses: shape (n, 7), the numbers of each record, in metres, quaternion x y z w.
     """
 
@@ -117,8 +117,8 @@ class StampedRecords:
         if not len(rows):
             return begin
         data, bounds, first, last = self._buffer.data, self._bounds, rows[0], rows[-1]
-        # Behind the length of the sequence, the first record is not at a multiple of eight, so
-        # that another number of bytes aligns its numbers.
+        # The first record follows a length of four bytes, so it is not at a multiple of eight, and
+        # its numbers need other bytes of alignment.
         size, end = self._sizes_before_numbers[first], bounds[first + 1]
         are_adjacent = last - first + 1 == len(rows)
         others = [data[end:bounds[last + 1]]] if are_adjacent else [

@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-End the process when the node cannot go on: it answers or it is gone, so that it is started again.
+End the process when the node cannot go on, so that a launch file can start it again.
 
 After a MemoryError, rclpy would lose callbacks, and block their groups for ever.
 """

@@ -68,7 +68,7 @@ _NAMES_OF_TYPES = {
 
 def settings_from_node(
     node: Node, defaults: Mapping[str, Value] | None = None, file: str = '',
-    advice: str = '',
+    advice: str = 'parameter sdf_file is not set',
 ) -> Settings:
     """
     Declare all parameters on a node with their given values, and convert these.
@@ -87,7 +87,9 @@ def settings_from_node(
     if sentences:
         raise SettingsError(sentences)
     settings = changed_settings(
-        Settings({}), parameters, node=node.get_fully_qualified_name(), advice=advice)
+        Settings({}), parameters,
+        f'{advice}; in a parameter file, they are below the name of this node, '
+        f'{node.get_fully_qualified_name()}')
     for parameter in parameters:
         _declare(node, parameter)
     return settings
@@ -105,16 +107,15 @@ def settings_from_values(values: Mapping[str, Any]) -> Settings:
 
 
 def changed_settings(
-    settings: Settings, parameters: Iterable[Parameter], *, node: str = '', advice: str = '',
+    settings: Settings, parameters: Iterable[Parameter], advice: str = '',
 ) -> Settings:
     """
     Convert new values of parameters.
 
     :param parameters: the new values, as :func:`parameter_with_type` returns them; parameters that
         are not declared here are ignored.
-    :param node: the full name of the node, at its start; messages show how to write a value on the
-        command line then.
-    :param advice: the message if there is neither a file nor a text, at its start.
+    :param advice: at the start of the node, the message if there is neither a file nor a text;
+        other messages show how to write a value on the command line then.
     :raises SettingsError: if a value has the wrong type or is not allowed.
     """
     values = dict(settings.values)
@@ -122,7 +123,7 @@ def changed_settings(
     for given in parameters:
         if given.name in DECLARATIONS:
             try:
-                values[given.name] = _converted(given, shows_command_line=bool(node))
+                values[given.name] = _converted(given, shows_command_line=bool(advice))
             except ValueError as error:
                 sentences.append(f'parameter {given.name} {error}')
     sources = [values.get(name) for name in ('sdf_file', 'robot_description')]
@@ -132,9 +133,8 @@ def changed_settings(
             'other one to an empty string')
     elif sources == ['', '']:
         sentences.insert(
-            0, f'{advice}; in a parameter file, they are below the name of this node, {node}'
-            if advice else
-            'parameter sdf_file is not set, nor is robot_description; set one of them')
+            0, advice or 'parameter sdf_file is not set, nor is robot_description; set one of '
+            'them')
     elif sources[1] and '<' not in sources[1]:
         sentences.insert(
             0, f'parameter robot_description is "{shortened(sources[1])}", which is no text of '

@@ -144,30 +144,25 @@ def line_about_detached_models(tree: TfTree, scene: Scene) -> str:
 
 def line_about_gazebo(count: int) -> str:
     """Return a line with the number of warnings for Gazebo only; '' if there are none."""
-    if not count:
-        return ''
-    return (
-        f'{count_in_words(count, "warning")} about Gazebo '
-        f'{"is" if count == 1 else "are"} not shown; "sdf_pose check FILE", or "sdf_pose check -" '
-        f'for a text, shows {"it" if count == 1 else "them"}')
+    return '' if not count else (
+        f'not shown: {count_in_words(count, "warning")} about Gazebo; for all warnings, type '
+        '"sdf_pose check FILE", or "sdf_pose check -" for a text')
 
 
 def line_about_unreported(missing: Unreported) -> str:
     """Return a line with the numbers of joints and models that are not reported; '' if none is."""
     parts = []
     if missing.number:
-        have = 'has' if missing.number == 1 else 'have'
         parts.append(
-            f'{count_in_words(missing.number, "joint")} {have} not been reported yet, for example '
+            f'no message has named {count_in_words(missing.number, "joint")} yet, for example '
             f'{names_in_line([missing.first])}; frames that a joint moves have no transforms '
             f'until a message on {" or ".join(missing.topics) or "a topic"} names the joint, '
             'or with unreported_joints:=zero')
     if missing.models:
-        have = 'has' if len(missing.models) == 1 else 'have'
         parts.append(
-            f'{count_in_words(len(missing.models), "model")} {have} no pose yet, for example '
-            f'{names_in_line(missing.models[:1])}; its frames have no transform from the root '
-            'until a message has its pose')
+            f'no pose has come yet for {count_in_words(len(missing.models), "model")}, for '
+            f'example {names_in_line(missing.models[:1])}; its frames have no transform from '
+            'the root until a message has its pose')
     return '; '.join(parts)
 
 
@@ -191,10 +186,9 @@ def line_about_joints_at_rest(scene: Scene, model: str, frame_names: FrameNames)
     first = np.array([free[0].joint.element], np.int32)
     name = FrameNaming(frame_names).frame_ids_from_scene(scene, first)[0] + free[0].suffix
     return (
-        f'{count_in_words(len(free), "joint")} that can move, for example '
-        f'{names_in_line([name])}, {"stays" if len(free) == 1 else "stay"} where the file '
-        f'puts {"it" if len(free) == 1 else "them"}; with the parameter use_joint_states, joints '
-        'follow the topics in joint_states_topics')
+        f'fixed as in the file: {count_in_words(len(free), "joint")} that can move, for example '
+        f'{names_in_line([name])}; with the parameter use_joint_states, joints follow the topics '
+        'in joint_states_topics')
 
 
 def count_in_words(number: int, what: str) -> str:
@@ -211,6 +205,5 @@ def _first_lines(problems: Sequence[object], what: str, hint: str = '') -> list[
     rest = len(problems) - len(lines)
     if rest:
         at_least = 'at least ' if len(problems) > MOST_PROBLEMS else ''
-        lines.append(
-            f'{at_least}{rest} more {what}{" is" if rest == 1 else "s are"} not shown{hint}')
+        lines.append(f'not shown: {at_least}{count_in_words(rest, f"more {what}")}{hint}')
     return lines

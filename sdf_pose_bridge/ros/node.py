@@ -68,15 +68,15 @@ class SdfPoseBridge:
     """
     The node from the moment at which its fixed frames are on ``/tf_static``.
 
-    The loader constructs it, which publishes everything else and starts the services, and calls
-    all methods but those of the executor. Whatever fails after a change was begun ends the
-    process, as another thread would go on with half of it.
+    The loader constructs it and calls all methods but those of the executor. The constructor
+    publishes everything else and starts the services. A failure in the middle of a change ends the
+    process, because other threads would go on with half of it.
 
     :param node: the node, with declared parameters and an executor in another thread.
     :param loader: the thread.
     :param frames: the frames of the scene, which are published on ``/tf_static``.
     :param reader: reads files.
-    :param parameter_services: those of the node, which answer from then on.
+    :param parameter_services: the parameter services of the node; they begin to answer.
     """
 
     def __init__(
@@ -205,7 +205,7 @@ class SdfPoseBridge:
             self._looking_for_others.call_if_due(), self._visuals.go_on())
 
     def _publish_what_is_due(self) -> float:
-        """Do the same as far as it is done during a load, too."""
+        """Do what is due also during a load; return the time in s until there is more."""
         return min(
             self._publishing_again.call_if_due(), self._publishing_diagnostics.call_if_due())
 
@@ -260,7 +260,7 @@ class SdfPoseBridge:
             return call.result()
 
     def _frames_from_scene(self, loaded: LoadedScene, settings: Settings) -> PublishedFrames:
-        """Prepare whatever can fail."""
+        """Make the messages and publishers of a scene. Whatever can fail is done here."""
         check_number_of_topics(settings, loaded.joint_positions)
         return frames_from_scene(self._node, loaded, settings, self._frames)
 

@@ -187,7 +187,7 @@ class PublishedMovingFrames:
         :param rows: their indices.
         :param stamp_ns: the stamp in nanoseconds.
         :param ignore_stamps: whether it need not be newer.
-        :return: those for which it is newer.
+        :return: the indices of those that have got it.
         """
         if stamp_ns <= self._newest_ns and not ignore_stamps:
             rows = rows[self._stamps_ns[rows] < stamp_ns]
@@ -209,8 +209,7 @@ class PublishedMovingFrames:
         """
         Publish all moving frames with known positions on ``/tf``.
 
-        :return: whether no message has given one of them a stamp; then they have the time of the
-            node.
+        :return: whether all have the time of the node, because no message has given them a stamp.
         """
         rows = np.flatnonzero(self.has_transform)
         if not len(rows):
@@ -272,7 +271,8 @@ class PublishedMovingFrames:
         Return the stamps of poses in nanoseconds.
 
         :param dofs: the last degree of freedom before each frame; -1 for none.
-        :param dof_of_reference: that before the frame in which all of them are given.
+        :param dof_of_reference: the last degree of freedom before the frame in which the poses are
+            given.
         :return: the newer stamp of both, or the time of the node where there is none.
         """
         known = np.append(self.positions.stamps_ns, NEVER)

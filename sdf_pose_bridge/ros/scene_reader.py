@@ -47,7 +47,7 @@ class SceneReader(LimitedProcess):
         Call a function that reads or writes the files of a request; it ends with the block.
 
         :param function: a function of a module; its arguments and result can be pickled.
-        :return: a context manager with the call, which raises, also from the block,
+        :return: a context manager with the call. These errors also come from the block:
         :raises LimitError: if reading the file exceeds the limits.
         :raises FileReadError: if the process ends during the call, or cannot be started, or there
             is no memory for its answer.

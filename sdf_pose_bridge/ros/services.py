@@ -91,8 +91,8 @@ def add_services(node: Node, lookup: Callable[[], Awaitable[PoseLookup]]) -> Non
         (ConvertPoses, 'convert_poses', convert_poses),
         (LookupPose, 'lookup_pose', lookup_pose),
     ):
-        # In groups of their own, they are taken from the middleware one after the other, so that
-        # it keeps the others, and no more of them than the quality of service says.
+        # A group of its own takes one request at a time. The others wait in the queue of the
+        # middleware, which has a limit.
         node.create_service(
             service_type, f'~/{name}', callback, qos_profile=SERVICE_QOS,
             callback_group=MutuallyExclusiveCallbackGroup())

@@ -84,10 +84,10 @@ class StateTopics(NamedTuple):
     """The topics of joint states and of poses of models."""
 
     joint_states: dict[str, str]
-    """The top-level model whose joints are on each topic, by the name of the topic before it is
-    remapped; empty if the joints of all models can be."""
+    """By the name of each topic, before it is remapped: the top-level model whose joints are on
+    it; empty for all models."""
     model_poses: dict[str, str] = {}  # noqa: RUF012 - is not changed
-    """The scoped name of the free model whose pose is on each topic, likewise."""
+    """In the same way: the scoped name of the free model whose pose is on the topic."""
     warnings: tuple[str, ...] = ()
     """A sentence about each topic that differs from the patterns."""
 

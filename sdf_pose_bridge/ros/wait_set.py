@@ -24,7 +24,7 @@ from sdf_pose_bridge.ros.cdr import NANOSECONDS
 _FOREVER = -1
 
 NO_NUMBER = 2**64 - 1
-"""The number of messages from a middleware that does not number them."""
+"""Stands for the number of a message if the middleware does not number messages."""
 
 
 class NoExecutor(CallbackGroup):
@@ -83,7 +83,7 @@ class WaitSet:
         self._subscriptions = None
         self._held.close()
         with ExitStack() as stack:
-            # What is held is not released while the middleware uses it, even if it is destroyed.
+            # A handle that is held is not released, even if its owner is destroyed.
             for handle in (
                 self._context.handle, self._guard_condition.handle,
                 *(each.handle for each in subscriptions),
@@ -99,8 +99,8 @@ def take_message(subscription: Subscription) -> tuple[bytes, int] | None:
     """
     Take a message that a subscription for serialized messages has.
 
-    :return: the message, and the number that its publisher has given it, which goes up, or
-        :data:`NO_NUMBER`; None if there is none.
+    :return: the message, and its number, which goes up for each publisher, or :data:`NO_NUMBER`;
+        None if no message waits.
     """
     with subscription.handle:
         taken = subscription.handle.take_message(subscription.msg_type, True)

@@ -84,7 +84,7 @@ def test_transforms_name_the_models_that_they_move(follow, tf, tracker):
 
 def test_a_tracker_may_come_late_stop_and_come_back_with_another_type(follow, tf, tracker):
     bridge = follow()
-    bridge.wait_for_line('3 models have no pose yet, for example "cart"')
+    bridge.wait_for_line('no pose has come yet for 3 models, for example "cart"')
     answer = tf.listener.call(
         LookupPose, f'{BRIDGE}/lookup_pose', LookupPose.Request(frame='cart/deck'))
     assert 'depends on the pose of model "cart", which has not been reported' in answer.message

@@ -53,7 +53,7 @@ def test_joints_that_nobody_reports_are_a_warning(status_of):
     status = status_of(GOOD, unreported=Unreported(2, 'arm/elbow'))
     assert status.level == DiagnosticStatus.WARN
     assert status.message.startswith(
-        '2 joints have not been reported yet, for example "arm/elbow";')
+        'no message has named 2 joints yet, for example "arm/elbow";')
     values = {value.key: value.value for value in status.values}
     assert values['joints not reported'] == '2'
     assert values['first joint not reported'] == 'arm/elbow'

@@ -239,7 +239,7 @@ def test_joints_that_stay_unreported_are_counted_once_and_then_that_none_is(foll
     following.published((FIRST, {'lift': 0.0, 'grip': 0.0}), (FIRST + 1, {'turn': 0.0}))
     assert following.states.unreported.number == 0
     log = capfd.readouterr().err
-    assert log.count('2 joints have not been reported yet, for example "grip"') == 1
+    assert log.count('no message has named 2 joints yet, for example "grip"') == 1
     assert log.count('all joints have been reported now') == 1
 
 
