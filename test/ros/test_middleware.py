@@ -21,11 +21,9 @@ OLD, NEW = FAST_DDS_2.variable, FAST_DDS_3.variable
 @pytest.mark.parametrize(('chosen', 'reason'), [
     ({OLD: 'mine.xml'}, f'{OLD} is set'),
     ({OLD: ''}, f'{OLD} is set'),
-    ({NEW: 'mine.xml'}, f'{NEW} is set'),
     ({NEW: ''}, f'{NEW} is set'),
     ({'RMW_IMPLEMENTATION': 'rmw_cyclonedds_cpp'}, 'the middleware is rmw_cyclonedds_cpp'),
     ({'ROS_DISTRO': 'humble'}, 'there is none for ROS_DISTRO "humble"'),
-    ({'ROS_DISTRO': ''}, 'there is none for ROS_DISTRO ""'),
 ])
 def test_a_choice_of_the_user_is_left_alone(distro, chosen, reason):
     environment = {'ROS_DISTRO': distro, **chosen}

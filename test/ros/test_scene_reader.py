@@ -74,13 +74,6 @@ def test_markers_come_from_it_and_changes_are_written_there(reader, request_of_f
     assert path.read_text(encoding='utf-8') == model_file(LINK).replace('1 0 0', '2 0 0')
 
 
-def test_a_change_of_a_file_that_has_changed_is_refused(reader, request_of_file, path):
-    loaded = load(reader, request_of_file)
-    path.write_text(model_file(LINK.replace('1 0 0', '1 2 0')), encoding='utf-8')
-    with pytest.raises(SdfError, match='the file has changed since it was read'):
-        result(reader, loaded.request, *change_of(loaded))
-
-
 def test_all_errors_of_a_file_arrive(reader, path, request_of_file):
     path.write_text(world_file('<model name="m"/><frame name="f" attached_to="x"/>'))
     with pytest.raises(SdfError) as caught:

@@ -270,7 +270,6 @@ def test_a_dry_run_writes_nothing(ask, path):
     ('mark', (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), 'tol', 'did you mean "tool"'),
     ('mark', (np.nan, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), '', 'must be a finite number'),
     ('mark', (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0), '', 'is zero, which is not a rotation'),
-    ('mark', (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), 'on_mark', 'moves with it'),
     ('mark', (300.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), '', 'is in metres; is it in mm?'),
 ])
 def test_a_wrong_request_is_refused(ask, path, frame, xyz, quat_xyzw, frame_id, reason):
