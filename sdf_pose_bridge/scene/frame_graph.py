@@ -221,10 +221,12 @@ class _Builder:
 
         :param attribute: its name; empty if a wrong value is not reported here.
         """
+        if not name:
+            return default
         elements, scopes = self._elements, self._scopes
         is_of_pose = attribute == 'relative_to'
         scope = index if index in elements.models and not is_of_pose else scopes.scope_of[index]
-        found = scopes.frame(scope, name) if name else default
+        found = scopes.frame(scope, name)
         if found is not None:
             return found
         uri = scopes.missing_uri(scope, name)

@@ -28,7 +28,7 @@ element. Merges and conversions, which move the element, change it.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 import enum
 from functools import cache, cached_property
 import math
@@ -145,6 +145,16 @@ _ITEM = re.compile(
     r'(?P<mark>@(?=\w)|/)?(?P<name>\w+|\*|(?<=/)|(?=[!+]?:))(?P<required>[!+]?)(?P<reference>\^?)'
     r'(?:=(?P<identifier>\w+(?:/\w+)?))?'
     r'(?P<value>:(?P<type>\w+)(?:\[(?P<minimum>[^,\]]*),(?P<maximum>[^,\]]*)\])?)?')
+_PLAIN_NUMBER = r'[+-]?[0-9]{1,50}(?:\.[0-9]{0,50})?(?:[eE][+-]?[0-9]{1,2})?'
+"""A number that all readers of SDFormat read alike."""
+_PLAIN_PART = r'(?:0(?:\.[0-9]{0,50})?|1)'
+"""Such a number from 0 to 1."""
+_PLAIN_VALUES = {
+    ':double': re.compile(_PLAIN_NUMBER),
+    ':vector3': re.compile(rf'{_PLAIN_NUMBER}(?:\s+{_PLAIN_NUMBER}){{2}}', re.ASCII),
+    ':color': re.compile(rf'{_PLAIN_PART}(?:\s+{_PLAIN_PART}){{2,3}}', re.ASCII),
+}
+_NO_VALUE = re.compile('(?!)')
 _UNREAD = frozenset({'model_state', 'population', 'road', 'state'})
 """Elements that libsdformat does not load."""
 _CHECKED_WITH_FRAMES = frozenset({'include', 'material', 'shader', 'submesh'})
@@ -172,6 +182,9 @@ class Item(NamedTuple):
     """The possible values of a choice."""
     minimum: float
     maximum: float
+    is_plain: Callable[[str], object]
+    """Returns a true value for valid texts of the most frequent forms, so that they need no other
+    check."""
 
 
 @cache
@@ -196,7 +209,8 @@ def _item(text: str) -> Item:
         raise ValueError(msg)
     return Item(
         mark, name, required, bool(reference), identifier, value, _VALUE_TYPES[label or 'string'],
-        CHOICES.get(label), float(minimum or -math.inf), float(maximum or math.inf))
+        CHOICES.get(label), float(minimum or -math.inf), float(maximum or math.inf),
+        _PLAIN_VALUES.get(value, _NO_VALUE).fullmatch)
 
 
 class Definition:

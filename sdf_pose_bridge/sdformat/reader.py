@@ -253,7 +253,7 @@ class _Reader:
             self._check_attributes(xml, attributes, definition, is_checked=scope.is_checked)
         if definition.is_pose:
             self._read_pose(xml, attributes, definition, scope, parent)
-        else:
+        elif not rule.is_plain(xml.text or ''):
             fault, doubt = judged_value(text_of(xml), rule)
             if fault:
                 self._sources.error(ElementInvalidError, xml, f'{_described_value(xml)} {fault}')
@@ -384,13 +384,13 @@ class _Reader:
 # Details of some kinds
 
 def _model_details(xml: XmlElement) -> ModelDetails:
-    static = next(child_elements(xml, 'static'), None)
+    static = first_child(xml, 'static')
     return ModelDetails(
         static is not None and boolean_from_text(text_of(static)) is True,
         frame_of_attribute(xml, 'canonical_link'), frame_of_attribute(xml, 'placement_frame'),
         tuple(
             etree.tostring(child, encoding='unicode', pretty_print=True, with_tail=False).rstrip()
-            for child in child_elements(xml, *URDF_TAGS)))
+            for child in xml if child.tag in URDF_TAGS))
 
 
 def _described_value(xml: XmlElement) -> str:

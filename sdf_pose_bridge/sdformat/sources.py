@@ -176,9 +176,9 @@ class Sources:
 
     def line(self, xml: XmlElement) -> int:
         """Return the line in which an element begins, from 1; 0 if it is not known."""
-        pose = self._origins.get(xml, _PARSED).pose
-        if pose is not None:
-            return pose.line
+        origin = self._origins.get(xml)
+        if origin is not None and origin.pose is not None:
+            return origin.pose.line
         return self._lines.get(xml) or xml.sourceline or 0
 
     def place(self, xml: XmlElement) -> Place:

@@ -36,16 +36,6 @@ _STREAM_NUMBER = re.compile(rf'[{WHITE_SPACE}]*([+-]?{_DECIMAL})')
 """The part that a C++ stream reads; it leaves the rest for the next number."""
 _STREAM_INTEGERS = re.compile(r'([+-]?[0-9]+)(\s+[+-]?[0-9]+|[+-][0-9]+)', re.ASCII)
 """Two integers, as a C++ stream reads them."""
-_PLAIN_NUMBER = r'[+-]?[0-9]{1,50}(?:\.[0-9]{0,50})?(?:[eE][+-]?[0-9]{1,2})?'
-"""A number that all of these read alike."""
-_PLAIN_PART = r'(?:0(?:\.[0-9]{0,50})?|1)'
-"""Such a number from 0 to 1."""
-_PLAIN_VALUES = {
-    ':double': re.compile(_PLAIN_NUMBER),
-    ':vector3': re.compile(rf'{_PLAIN_NUMBER}(?:[{WHITE_SPACE}]+{_PLAIN_NUMBER}){{2}}'),
-    ':color': re.compile(rf'{_PLAIN_PART}(?:[{WHITE_SPACE}]+{_PLAIN_PART}){{2,3}}'),
-}
-"""Valid values of the most frequent types, checked first because most are of these forms."""
 _DECIMAL_CHARACTERS = f'0123456789+-.{WHITE_SPACE}'
 _WORD = re.compile(f'[^{WHITE_SPACE}]+')
 _NUMBER_CHARACTERS = f'{_DECIMAL_CHARACTERS}eE'
@@ -104,9 +94,6 @@ def judged_value(text: str, rule: Item) -> tuple[str, str]:
     :return: the rule that it breaks, empty if it is valid; and the numbers that were read, empty
         if they agree with the text. In a message, both follow the value.
     """
-    plain = _PLAIN_VALUES.get(rule.value)
-    if plain is not None and plain.fullmatch(text):
-        return '', ''
     stripped, value_type = text.strip(WHITE_SPACE), rule.value_type
     if not stripped:
         return 'is empty; it must have a value' if rule.required == '!' else '', ''
