@@ -31,12 +31,13 @@ from changes import (
 )
 from command_line import executable_of_workspace
 from diagnostic_msgs.msg import DiagnosticStatus
+from geometry_msgs.msg import Point, Pose, PoseStamped
 from rosgraph_msgs.msg import Clock
 from sizes import size
 from slow_file import SlowFile
 from std_srvs.srv import Trigger
 
-from sdf_pose_bridge_interfaces.srv import ConvertRotation
+from sdf_pose_bridge_interfaces.srv import ConvertRotation, SetPose
 
 LISTENING = """
 import rclpy
@@ -250,13 +251,30 @@ sys.exit(run(sys.argv, 'bridge', reader))
 """The node, of which one publisher does not work when the crate is at x = 2."""
 
 
+def change_the_file(listener, file):
+    replace(file, world(2))
+
+
+def set_another_file(listener, file):
+    other = file.with_name('other.sdf')
+    other.write_text(world(2), encoding='utf-8')
+    asked_to_set(listener, sdf_file=str(other))
+
+
+def set_the_pose(listener, file):
+    pose = PoseStamped(pose=Pose(position=Point(x=2.0)))
+    listener.ask(SetPose, f'{BRIDGE}/set_pose', SetPose.Request(frame='crate', pose=pose))
+
+
+@pytest.mark.parametrize('change', [change_the_file, set_another_file, set_the_pose])
 def test_a_publish_that_fails_after_the_swap_of_scenes_ends_the_bridge(
-        ros_domain, file, listener):
+        ros_domain, file, listener, change):
     bridge = LoggedProcess([
-        sys.executable, '-c', UNABLE_TO_PUBLISH, '--ros-args', '-p', f'sdf_file:={file}'])
+        sys.executable, '-c', UNABLE_TO_PUBLISH, '--ros-args', '-p', f'sdf_file:={file}',
+        '-p', 'allow_set_pose:=true'])
     try:
         wait_for_x(listener, 1.0)
-        replace(file, world(2))
+        change(listener, file)
         assert bridge.wait_for_end() == 1
     finally:
         bridge.end()
