@@ -29,6 +29,9 @@ OTHERS_PERIOD_S = 1.0
 _MOST_WAITING = 500
 """Largest number of messages that wait in a subscription, those of this node included."""
 
+_UNKNOWN_NODE = '_NODE_NAME_UNKNOWN_'
+"""The name of a node in the middleware (rmw_dds_common) until it is discovered."""
+
 
 class OtherPublishers:
     """
@@ -58,7 +61,7 @@ class OtherPublishers:
         others: dict[Topic, list[str]] = {}
         gids: set[bytes] = set()
         for topic in (TF_STATIC, TF):
-            found = self._node.get_publishers_info_by_topic(topic.name)
+            found = publishers_of_topic(self._node, topic.name)
             gids.update(bytes(each.endpoint_gid) for each in found)
             name = self._node.resolve_topic_name(topic.name)
             # The other node may have the same name.
@@ -116,6 +119,12 @@ class OtherPublishers:
                 self._reported.add((topic.name, child))
                 self._node.get_logger().warning(line)
             return
+
+
+def publishers_of_topic(node: Node, topic: str) -> list[TopicEndpointInfo]:
+    """Return the publishers of a topic, without those whose nodes are not discovered yet."""
+    return [each for each in node.get_publishers_info_by_topic(topic)
+            if each.node_name != _UNKNOWN_NODE]
 
 
 def names_of_nodes(publishers: Sequence[TopicEndpointInfo]) -> list[str]:

@@ -22,7 +22,7 @@ from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.ros.cdr import NANOSECONDS, SerializedNames, StampedPose
 from sdf_pose_bridge.ros.log_lines import names_in_line
-from sdf_pose_bridge.ros.other_publishers import names_of_nodes
+from sdf_pose_bridge.ros.other_publishers import names_of_nodes, publishers_of_topic
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
 from sdf_pose_bridge.ros.wait_set import NO_NUMBER
 from sdf_pose_bridge.tf.joint_motion import NO_DOF
@@ -159,7 +159,7 @@ class StateSource:
 
     def publishers(self) -> list[str]:
         """Return the full name of the node of each publisher."""
-        return names_of_nodes(self._node.get_publishers_info_by_topic(self.name))
+        return names_of_nodes(publishers_of_topic(self._node, self.name))
 
     def warn_about_invalid(self, names: Sequence[str]) -> None:
         """Log the joints or models whose values cannot be used, if there are any."""
