@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
-from itertools import takewhile
 from typing import Any, NamedTuple
 
 from lxml import etree
@@ -22,10 +21,9 @@ from sdf_pose_bridge.errors import (
     DuplicateNameError,
     ElementIncorrectTypeError,
     ElementInvalidError,
-    ReservedNameError,
     SdfError,
 )
-from sdf_pose_bridge.names import hint_from_names, ROOT_FRAME, SEPARATOR, shortened
+from sdf_pose_bridge.names import hint_from_names, ROOT_FRAME, shortened
 from sdf_pose_bridge.sdformat.elements import (
     Elements,
     ElementsBuilder,
@@ -44,7 +42,7 @@ from sdf_pose_bridge.sdformat.poses import (
     PoseTextError,
 )
 from sdf_pose_bridge.sdformat.shapes import check_material, check_submesh, shape_of
-from sdf_pose_bridge.sdformat.sibling_names import SiblingNames
+from sdf_pose_bridge.sdformat.sibling_names import check_scoped_names, SiblingNames
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import CAMERA_TYPES, URDF_TAGS
 from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
@@ -54,18 +52,15 @@ from sdf_pose_bridge.sdformat.values import (
     frame_of_attribute,
     judged_value,
 )
-from sdf_pose_bridge.sdformat.versions import allows_scoped_names
 from sdf_pose_bridge.sdformat.xml_tree import (
     attribute_of,
     child_elements,
     described,
     first_child,
-    is_foreign_itself,
     text_of,
     value_at,
     value_of,
     WHITE_SPACE,
-    with_ancestors,
     written_tag,
     XmlElement,
 )
@@ -95,7 +90,7 @@ def elements_from_tree(root: XmlElement, sources: Sources, *, shapes: bool = Fal
     """
     sources = sources.of_unchanged_trees()
     if sources.may_hold_scoped_names:
-        _check_scoped_names(root, sources)
+        check_scoped_names(root, sources)
     return _Reader(sources, sources.path(root), shapes=shapes).elements(root)
 
 
@@ -114,25 +109,6 @@ def is_valid_element(xml: XmlElement, definition: Definition, sources: Sources) 
         reader.read_value(xml, definition, definition.value, reader.top, NO_ELEMENT)
     part.problems.extend_parent()
     return not part.problems.errors
-
-
-def _check_scoped_names(root: XmlElement, sources: Sources) -> None:
-    """Report names with ``::`` in files without scoped names, and in files that they include."""
-    is_allowed: dict[XmlElement | None, bool] = {None: True}
-    xmls: list[XmlElement] = root.xpath('//*[contains(@name, "::")]')
-    for xml in xmls:
-        # The name may be in the file that includes the element.
-        named_in = xml.getparent() if sources.origin(xml).is_named_by_include else xml
-        around = () if named_in is None else with_ancestors(named_in)
-        for each in reversed([*takewhile(lambda each: each not in is_allowed, around)]):
-            file = sources.origin(each).file
-            is_allowed[each] = is_foreign_itself(each) or (
-                is_allowed[each.getparent()]
-                and (file is None or allows_scoped_names(sources.versions[file])))
-        if is_allowed[named_in]:
-            continue
-        msg = f'the name "{xml.get("name")}" holds "{SEPARATOR}", which separates scopes'
-        sources.error_in_name(ReservedNameError, xml, msg)
 
 
 class _Scope(NamedTuple):

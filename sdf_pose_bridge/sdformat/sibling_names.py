@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Check the names of siblings: missing, reserved and duplicate ones.
+Check names: missing, reserved and duplicate ones of siblings, and those that hold ``::``.
 
 Rules: pose semantics in SDFormat, section on names; ``isReservedName`` and the loading of Model,
 World and Link in libsdformat.
@@ -9,7 +9,7 @@ World and Link in libsdformat.
 
 from __future__ import annotations
 
-from itertools import count
+from itertools import count, takewhile
 
 from sdf_pose_bridge.errors import (
     AttributeInvalidError,
@@ -18,12 +18,17 @@ from sdf_pose_bridge.errors import (
     Place,
     ReservedNameError,
 )
-from sdf_pose_bridge.names import is_reserved, WORLD_FRAME
+from sdf_pose_bridge.names import is_reserved, SEPARATOR, WORLD_FRAME
 from sdf_pose_bridge.sdformat.elements import ElementsBuilder
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.sources import Sources
-from sdf_pose_bridge.sdformat.versions import renames_duplicates
-from sdf_pose_bridge.sdformat.xml_tree import attribute_of, XmlElement
+from sdf_pose_bridge.sdformat.versions import allows_scoped_names, renames_duplicates
+from sdf_pose_bridge.sdformat.xml_tree import (
+    attribute_of,
+    is_foreign_itself,
+    with_ancestors,
+    XmlElement,
+)
 
 
 class SiblingNames:
@@ -95,3 +100,22 @@ class SiblingNames:
                'other one')
         self._sources.warning(xml, msg)
         return new_name
+
+
+def check_scoped_names(root: XmlElement, sources: Sources) -> None:
+    """Report names with ``::`` in files without scoped names, and in files that they include."""
+    is_allowed: dict[XmlElement | None, bool] = {None: True}
+    xmls: list[XmlElement] = root.xpath('//*[contains(@name, "::")]')
+    for xml in xmls:
+        # The name may be in the file that includes the element.
+        named_in = xml.getparent() if sources.origin(xml).is_named_by_include else xml
+        around = () if named_in is None else with_ancestors(named_in)
+        for each in reversed([*takewhile(lambda each: each not in is_allowed, around)]):
+            file = sources.origin(each).file
+            is_allowed[each] = is_foreign_itself(each) or (
+                is_allowed[each.getparent()]
+                and (file is None or allows_scoped_names(sources.versions[file])))
+        if is_allowed[named_in]:
+            continue
+        msg = f'the name "{xml.get("name")}" holds "{SEPARATOR}", which separates scopes'
+        sources.error_in_name(ReservedNameError, xml, msg)
