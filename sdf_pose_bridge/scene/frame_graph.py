@@ -179,16 +179,17 @@ class _Builder:
 
     def _canonical_links(self, canonical: Mapping[int, int], bodies: Indices) -> Indices:
         kinds: list[int] = self._elements.kinds.tolist()
-        links = np.full(len(kinds), NO_ELEMENT, dtype=np.int32)
+        body_of: list[int] = bodies.tolist()
+        links = [NO_ELEMENT] * len(kinds)
         for model, target in canonical.items():  # inner models come first
             if target >= 0 and kinds[target] != Kind.MODEL:
-                link = int(bodies[target])
+                link = body_of[target]
             else:
                 # A model outside the model does not lead to a link.
-                link = int(links[target]) if target > model else NO_ELEMENT
+                link = links[target] if target > model else NO_ELEMENT
             if link >= 0 and kinds[link] == Kind.LINK:
                 links[model] = link
-        return links
+        return np.array(links, dtype=np.int32)
 
     # Placement
 

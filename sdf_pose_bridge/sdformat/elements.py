@@ -234,7 +234,7 @@ class ElementsBuilder:
             pose_lines=pose_lines, poses=np.tile(Pose(), (len(self.names), 1)),
             paths=self._paths, has_shapes=self._has_shapes, **self.details)
         for pose_format, (indices, texts, numbers_of_all) in self._poses.items():
-            numbers = np.array(numbers_of_all).reshape(len(texts), -1)
+            numbers = np.fromiter(numbers_of_all, float).reshape(len(texts), -1)
             table.poses[indices] = poses_from_numbers(numbers, pose_format)
             for row, doubt in pose_doubts(texts, numbers, pose_format):
                 problems.warning(doubt, table.place_of_pose(indices[row]))

@@ -145,13 +145,20 @@ _ITEM = re.compile(
     r'(?P<mark>@(?=\w)|/)?(?P<name>\w+|\*|(?<=/)|(?=[!+]?:))(?P<required>[!+]?)(?P<reference>\^?)'
     r'(?:=(?P<identifier>\w+(?:/\w+)?))?'
     r'(?P<value>:(?P<type>\w+)(?:\[(?P<minimum>[^,\]]*),(?P<maximum>[^,\]]*)\])?)?')
-_PLAIN_NUMBER = r'[+-]?[0-9]{1,50}(?:\.[0-9]{0,50})?(?:[eE][+-]?[0-9]{1,2})?'
+_PLAIN_DECIMAL = r'[+-]?[0-9]{1,50}(?:\.[0-9]{0,50})?'
+_PLAIN_NUMBER = rf'{_PLAIN_DECIMAL}(?:[eE][+-]?[0-9]{{1,2}})?'
 """A number that all readers of SDFormat read alike."""
 _PLAIN_PART = r'(?:0(?:\.[0-9]{0,50})?|1)'
 """Such a number from 0 to 1."""
 _PLAIN_VALUES = {
+    ':string': re.compile(r'\w+'),
+    ':frame': re.compile(r'[a-z]\w*'),
+    ':bool': re.compile('true|false|0|1'),
     ':double': re.compile(_PLAIN_NUMBER),
     ':vector3': re.compile(rf'{_PLAIN_NUMBER}(?:\s+{_PLAIN_NUMBER}){{2}}', re.ASCII),
+    # One of the numbers begins with another digit than 0, so the length is not zero.
+    ':axis': re.compile(
+        rf'(?=(?:.*\s)?[+-]?[1-9]){_PLAIN_DECIMAL}(?:\s+{_PLAIN_DECIMAL}){{2}}', re.ASCII),
     ':color': re.compile(rf'{_PLAIN_PART}(?:\s+{_PLAIN_PART}){{2,3}}', re.ASCII),
 }
 _NO_VALUE = re.compile('(?!)')

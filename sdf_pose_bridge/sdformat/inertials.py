@@ -112,12 +112,13 @@ def inertial_from_element(
     :param reads_masses: whether to read one that is not automatic.
     :return: the inertial; None if it is not read, or cannot be computed.
     """
+    is_automatic = boolean_from_text(xml.get('auto', ''))
+    if not (is_automatic or reads_masses):
+        return None
     link = xml.getparent()
     assert link is not None
-    if boolean_from_text(xml.get('auto', '')):
+    if is_automatic:
         return _automatic_inertial(xml, link, sources)
-    if not reads_masses:
-        return None
     # By default the moments are those of the unit matrix, as in libsdformat.
     inertial = Inertial(number_of_child(xml, 'mass', 1.0), tuple(
         number_of_child(xml, f'inertia/{tag}', float(tag[1] == tag[2])) for tag in MOMENTS))

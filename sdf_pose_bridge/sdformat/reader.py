@@ -263,7 +263,7 @@ class _Reader:
             path = origin.file
         index = table.add(
             kind, name, parent, scope_element,
-            self._sources.file_indices[path if origin.pose is None else origin.pose.file],
+            self._sources.file_indices[origin.pose_file or path],
             self._sources.line(xml))
         if origin.include is not None:
             table.details['includes'][index] = origin.include
@@ -290,7 +290,8 @@ class _Reader:
         for rule in definition.checked_attributes:
             name, text = rule.name, xml.get(rule.name)
             choice = rule.choice if definition.has_frames else None
-            if (is_checked and choice is None) or (text is None and not rule.required):
+            if (is_checked and choice is None) or (
+                    not rule.required if text is None else rule.is_plain(text)):
                 continue
             value = '' if text is None else text.strip(WHITE_SPACE)
             if text is None:
@@ -360,13 +361,16 @@ class _Reader:
 # Details of some kinds
 
 def _model_details(xml: XmlElement) -> ModelDetails:
-    static = first_child(xml, 'static')
+    static, urdf = None, []
+    for child in xml:
+        if child.tag == 'static' and static is None:
+            static = text_of(child)
+        elif child.tag in URDF_TAGS:
+            urdf.append(etree.tostring(
+                child, encoding='unicode', pretty_print=True, with_tail=False).rstrip())
     return ModelDetails(
-        static is not None and boolean_from_text(text_of(static)) is True,
-        frame_of_attribute(xml, 'canonical_link'), frame_of_attribute(xml, 'placement_frame'),
-        tuple(
-            etree.tostring(child, encoding='unicode', pretty_print=True, with_tail=False).rstrip()
-            for child in xml if child.tag in URDF_TAGS))
+        boolean_from_text(static or '') is True, frame_of_attribute(xml, 'canonical_link'),
+        frame_of_attribute(xml, 'placement_frame'), tuple(urdf))
 
 
 def _described_value(xml: XmlElement) -> str:

@@ -52,8 +52,8 @@ class Origin(NamedTuple):
     """The include of an included element; None for its content."""
     is_named_by_include: bool = False
     """Whether its name is in the file that includes it."""
-    pose: Place | None = None
-    """The place of its pose, if this is not in its own file."""
+    pose_file: str | None = None
+    """The file of its pose, if this is not its own file."""
     is_checked: bool = False
     """Whether the values in it were checked before it was copied to its place."""
     next_attributes: Mapping[str, str] = MappingProxyType({})
@@ -155,6 +155,11 @@ class Sources:
         self.set_origin(xml, file=self.path(source))
         self._lines[xml] = self.line(source)
 
+    def set_source_of_pose(self, xml: XmlElement, source: XmlElement) -> None:
+        """Give an element, but not its content, the place of another one, which has its pose."""
+        self.set_origin(xml, pose_file=self.path(source))
+        self._lines[xml] = self.line(source)
+
     def set_parsed_line(self, xml: XmlElement, source: XmlElement) -> None:
         """Give an element of a new tree the line of an element of the old one."""
         xml.sourceline = source.sourceline  # type: ignore[misc]  # it can be set
@@ -176,9 +181,6 @@ class Sources:
 
     def line(self, xml: XmlElement) -> int:
         """Return the line in which an element begins, from 1; 0 if it is not known."""
-        origin = self._origins.get(xml)
-        if origin is not None and origin.pose is not None:
-            return origin.pose.line
         return self._lines.get(xml) or xml.sourceline or 0
 
     def place(self, xml: XmlElement) -> Place:
@@ -189,11 +191,11 @@ class Sources:
             outer = known.get(each.getparent(), Place(''))
             known[each] = Place(
                 self.origin(each).file or outer.file, element=f'{outer.element}/{_step(each)}')
-        place, pose = known.pop(xml), self.origin(xml).pose  # only ancestors stay known
+        place = known.pop(xml)  # only ancestors stay known
         if len(known) > _MOST_PLACES_REMEMBERED:
             known.clear()
         return place._replace(
-            file=place.file if pose is None else pose.file, line=self.line(xml))
+            file=self.origin(xml).pose_file or place.file, line=self.line(xml))
 
     def copy_of(self, xml: XmlElement, user: XmlElement) -> XmlElement:
         """Copy an element with its content and its places, counted as :meth:`count_copy`."""

@@ -36,10 +36,9 @@ _STREAM_NUMBER = re.compile(rf'[{WHITE_SPACE}]*([+-]?{_DECIMAL})')
 """The part that a C++ stream reads; it leaves the rest for the next number."""
 _STREAM_INTEGERS = re.compile(r'([+-]?[0-9]+)(\s+[+-]?[0-9]+|[+-][0-9]+)', re.ASCII)
 """Two integers, as a C++ stream reads them."""
-_DECIMAL_CHARACTERS = f'0123456789+-.{WHITE_SPACE}'
 _WORD = re.compile(f'[^{WHITE_SPACE}]+')
-_NUMBER_CHARACTERS = f'{_DECIMAL_CHARACTERS}eE'
-_LONG_EXPONENT = re.compile(r'[eE][+-]?[0-9]{3}')
+_PLAIN_NUMBERS = re.compile(
+    rf'[0-9+\-.{WHITE_SPACE}]*(?:[eE][+-]?[0-9]{{1,2}}(?![0-9])[0-9+\-.{WHITE_SPACE}]*)*')
 _LONGEST_PLAIN = 200
 """
 A number with fewer characters, and an exponent of two digits at most, is in the range of a double.
@@ -210,9 +209,7 @@ def numbers_from_text(text: str, value_type: ValueType) -> Sequence[float]:
 
 def plain_numbers_from_text(text: str) -> Sequence[float]:
     """Return the numbers of a text that all readers read alike; none for other texts."""
-    others = text.strip(_DECIMAL_CHARACTERS)
-    if len(text) >= _LONGEST_PLAIN or (others and (
-            others.strip(_NUMBER_CHARACTERS) or _LONG_EXPONENT.search(text))):
+    if len(text) >= _LONGEST_PLAIN or not _PLAIN_NUMBERS.fullmatch(text):
         return ()
     try:
         return [*map(float, text.split())]

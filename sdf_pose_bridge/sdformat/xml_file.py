@@ -25,6 +25,7 @@ from lxml import etree
 import numpy as np
 
 from sdf_pose_bridge.errors import FileReadError, PassingReadError, Place, SdfWarning
+from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.names import hint_from_names, shortened_message
 from sdf_pose_bridge.process_limits import raise_limits
 from sdf_pose_bridge.sdformat.limits import Usage
@@ -301,11 +302,8 @@ def _lines_and_warnings(
     has_break = has_break or rest.count(b'<') != rest.count(b'>')
     if not has_break and text.count(b'\n') < _LAST_LINE:
         return {}, []
-    without_others = _OTHER_PART.sub(lambda part: b'\n' * part[0].count(b'\n'), text)
-    characters = np.frombuffer(without_others + b'/', np.uint8)
-    begins = np.flatnonzero(characters == ord('<'))
-    begins = begins[characters[begins + 1] != ord('/')]
-    breaks = np.flatnonzero(characters == ord('\n'))
+    begins = _begins_of_elements(text)
+    breaks = np.flatnonzero(np.frombuffer(text, np.uint8) == ord('\n'))
     in_order = np.searchsorted(breaks, begins) + 1
     first = 0 if has_break else int(np.searchsorted(in_order, _LAST_LINE))
     # Nothing after the outermost element belongs to the tree.
@@ -322,3 +320,17 @@ def _lines_and_warnings(
                    'keeps it, so names differ there')
             warnings.append(SdfWarning('WARNING', shortened_message(msg), Place(path, line)))
     return lines, warnings
+
+
+def _begins_of_elements(text: bytes) -> Indices:
+    """Return the offsets of all start tags, without those in comments and the like."""
+    characters = np.frombuffer(text + b'/', np.uint8)
+    begins = np.flatnonzero(characters == ord('<'))
+    second = characters[begins + 1]
+    ends, end = np.zeros_like(begins), 0
+    for row in np.flatnonzero((second == ord('!')) | (second == ord('?'))).tolist():
+        other = None if begins[row] < end else _OTHER_PART.match(text, begins[row])
+        ends[row] = end = end if other is None else other.end()
+    begins_element: Indices = begins[
+        (second != ord('/')) & (np.maximum.accumulate(ends) <= begins)]
+    return begins_element

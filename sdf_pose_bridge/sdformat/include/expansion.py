@@ -279,7 +279,7 @@ def _override(include: XmlElement, top: XmlElement, sources: Sources) -> None:
     if 'name' in own:
         sources.set_origin(top, is_named_by_include=True)
     if 'pose' in own:
-        sources.set_origin(top, pose=Place(sources.path(include), sources.line(include)))
+        sources.set_source_of_pose(top, include)
     placement = value_of(own['placement_frame']) if 'placement_frame' in own else ''
     if placement:
         if 'pose' not in own:

@@ -133,7 +133,7 @@ def _proxy_frame(
     proxy.append(proxy_pose)
     sources.set_source(proxy, model)
     sources.set_origin(
-        proxy, pose=sources.origin(model).pose, include=sources.place(include),
+        proxy, pose_file=sources.origin(model).pose_file, include=sources.place(include),
         is_named_by_include=first_child(include, 'name') is not None,
         placement_frame=name if placement == MODEL_FRAME else placement)
     return proxy
