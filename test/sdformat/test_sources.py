@@ -36,7 +36,7 @@ def test_lines_of_all_elements_of_a_long_file():
 @pytest.mark.parametrize('content', [
     '<!-- <link name="k"> -->', '<!-- <a b="> -->', "<!-- don't -->",
     '<plugin name="p" filename="f"><![CDATA[<a><b c=">]]></plugin>',
-    '<x><![CDATA[<!-- ]]></x>', '<x>a > b</x>', "<x>don't</x>", '<x y="a>b"/>', "<x y='a>'/>",
+    '<x><![CDATA[<!-- ]]></x>', '<x><![CDATA[<!-- ]]></x><b/><!-- c -->', '<x>a > b</x>', "<x>don't</x>", '<x y="a>b"/>', "<x y='a>'/>",
     '<frame name="a&lt;b&gt;"/>', '<x:y z:w="1"/>', '<x\n\n/>', '<x></x >',
     '<!-- a ---><!-- b -->', '<x y="\'"/>', "<x y='\"'/>",
 ])

@@ -5,6 +5,10 @@
 import math
 
 import pytest
+
+pytest.importorskip('hypothesis', reason='needs hypothesis')
+from hypothesis import given
+from hypothesis import strategies as st
 from sdf_texts import codes_of, link_with, model_file, only_error, TWO_LINKS, world_file
 
 from sdf_pose_bridge import load_text
@@ -218,6 +222,22 @@ def test_numbers_that_are_read_otherwise_have_a_warning(text, warning):
 def test_mask_in_hexadecimal_has_no_warning():
     mask = '<contact><collide_bitmask>0x0F</collide_bitmask></contact>'
     assert not load_text(surface(mask)).warnings
+
+
+@pytest.mark.parametrize(
+    'value_type', ['string', 'frame', 'bool', 'double', 'vector3', 'axis', 'color'])
+@given(st.data())
+def test_frequent_form_needs_no_other_check(value_type, data):
+    rule = Definition('x', f'!:{value_type}').value
+    text = data.draw(st.from_regex(rule.is_plain.__self__, fullmatch=True))
+    assert judged_value(text, rule) == ('', '')
+
+
+@pytest.mark.parametrize(('text', 'value_type'), [
+    ('__root__', 'frame'), ('0 0 0', 'axis'), ('0.0 0 0.0000001', 'axis'), ('1e-9 0 0', 'axis'),
+    (' ', 'string'), ('1 1 2', 'color'), ('True', 'bool')])
+def test_form_that_may_be_wrong_is_checked(text, value_type):
+    assert not Definition('x', f':{value_type}').value.is_plain(text)
 
 
 @pytest.mark.parametrize('text', ['1 2 3', ' 1\t2\n3 ', '+1 .5 1e-3', '1. 2. 3.'])
