@@ -9,6 +9,9 @@ from sdf_pose_bridge import load, load_text
 
 # Lines: libxml2 counts no more than 65,535 of them
 
+LINES = '\n' * 70_000
+
+
 def line_of_link(content):
     """Return the line of the link ``l`` in a model with the given content."""
     scene = load_text(model_file(content))
@@ -36,14 +39,15 @@ def test_lines_of_all_elements_of_a_long_file():
 @pytest.mark.parametrize('content', [
     '<!-- <link name="k"> -->', '<!-- <a b="> -->', "<!-- don't -->",
     '<plugin name="p" filename="f"><![CDATA[<a><b c=">]]></plugin>',
-    '<x><![CDATA[<!-- ]]></x>', '<x><![CDATA[<!-- ]]></x><b/><!-- c -->', '<x>a > b</x>', "<x>don't</x>", '<x y="a>b"/>', "<x y='a>'/>",
+    '<x><![CDATA[<!-- ]]></x>', '<x><![CDATA[<!-- ]]></x><b/><!-- c -->',
+    '<x>a > b</x>', "<x>don't</x>", '<x y="a>b"/>', "<x y='a>'/>",
     '<frame name="a&lt;b&gt;"/>', '<x:y z:w="1"/>', '<x\n\n/>', '<x></x >',
     '<!-- a ---><!-- b -->', '<x y="\'"/>', "<x y='\"'/>",
 ])
 def test_content_that_looks_like_tags_does_not_change_lines(content):
-    extra = content.count('\n')
-    assert line_of_link('\n' * 70_000 + content + '\n' + LINK) == 70_002 + extra
-    assert line_of_link(content + '\n' * 70_000 + LINK) == 70_001 + extra
+    extra, rest = content.count('\n'), f'{LINK}\n\n<x/>'
+    assert line_of_link(f'{LINES}{content}\n{rest}') == 70_002 + extra
+    assert line_of_link(f'{content}{LINES}{rest}') == 70_001 + extra
 
 
 @pytest.mark.parametrize(('before', 'after'), [
@@ -51,7 +55,7 @@ def test_content_that_looks_like_tags_does_not_change_lines(content):
     ('<!DOCTYPE sdf SYSTEM "<b>">', ''), ('', '<!-- <b> -->'), ('', '<b/>'), ('', '</b>'),
 ])
 def test_content_beside_the_outermost_element_does_not_change_lines(before, after):
-    scene = load_text(before + model_file('\n' * 70_000 + LINK) + after)
+    scene = load_text(before + model_file(LINES + LINK) + after)
     assert scene.lines[scene.index('m::l')] == 70_001
 
 
@@ -65,7 +69,7 @@ def test_lines_end_with_line_feeds(line_end):
     'UTF-32LE', 'windows-1252'])
 def test_lines_of_bytes_in_any_encoding(encoding):
     name = {'ISO-8859-1': 'größe', 'windows-1252': '€', 'utf-8': '手 größe'}.get(encoding, '手')
-    text = model_file(f'<x>{name}</x>' + '\n' * 70_000 + f'<link name="{name}"/>')
+    text = model_file(f'<x>{name}</x>' + LINES + f'<link name="{name}"/>')
     declared = f'<?xml version="1.0" encoding="{encoding.removesuffix("-sig")}"?>' + text
     scene = load_text(declared.encode(encoding))
     assert scene.lines[scene.index(f'm::{name}')] == 70_001
@@ -86,7 +90,7 @@ def test_line_of_a_warning(line):
 
 
 def test_line_of_broken_xml_in_a_long_file():
-    assert only_error(model_file('\n' * 70_000 + '<link name="l"></lynk>')).line == 70_001
+    assert only_error(model_file(LINES + '<link name="l"></lynk>')).line == 70_001
 
 
 # Files
@@ -100,7 +104,7 @@ def folder(tmp_path):
     """Return a folder with a long model file that is included twice, and by a file in between."""
     write_files(
         tmp_path,
-        long=model_file('\n' * 70_000 + LINK + '\n' * 70_000 + '<frame name="f"/>'),
+        long=model_file(LINES + LINK + LINES + '<frame name="f"/>'),
         twice=world_file(
             '\n' * 80_000 + '<include><uri>long.sdf</uri><name>a</name></include>\n'
             '<include><uri>long.sdf</uri><name>b</name></include>\n<frame name="g"/>'),
