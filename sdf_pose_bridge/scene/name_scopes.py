@@ -58,17 +58,17 @@ class NameScopes:
         self._frames = defaultdict[int, dict[str, int]](dict)
         # If names are equal, which is an error, the first one counts.
         for index in np.flatnonzero(IS_FRAME_KIND[elements.kinds])[::-1].tolist():
-            self._frames[self.roots[index]][self.names[index]] = index
+            frames = self._frames[self.roots[index]]
+            frames[self.names[index]] = index
+            if self._is_model[index]:
+                frames[self.names[index] + _OWN_FRAME] = index
         for world in np.flatnonzero(elements.kinds == Kind.WORLD).tolist():
             self._frames[world][WORLD_FRAME] = world
 
     def frame(self, scope: int, reference: str) -> int | None:
         """Find the frame that a reference names, as written and not empty."""
         outer = self.names[scope] if self._is_model[scope] else ''
-        name = scoped_name(outer, reference)
-        found = self._frames[self.roots[scope]].get(name.removesuffix(_OWN_FRAME))
-        is_model = found is not None and self._is_model[found]
-        return found if is_model or not name.endswith(_OWN_FRAME) else None
+        return self._frames[self.roots[scope]].get(scoped_name(outer, reference))
 
     def missing_uri(self, scope: int, reference: str) -> str:
         """Return the URI of the missing include that a reference leads into, or ''."""
@@ -122,7 +122,7 @@ class NameScopes:
                 (MODEL_FRAME, self.names[scope] + SEPARATOR) if self._is_model[scope]
                 else (WORLD_FRAME, ''))
             visible = (name[len(prefix):] for name in self._frames[self.roots[scope]]
-                       if name.startswith(prefix))
+                       if name.startswith(prefix) and not name.endswith(_OWN_FRAME))
             self._indices[scope] = NameIndex(
                 chain([own], islice(visible, _MOST_NAMES_COMPARED - 1)))
         return self._indices[scope].hint(reference)
