@@ -28,7 +28,7 @@ else:
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers():
     """Return the number of processes for ``-n auto``: most tests wait for other processes."""
-    return min(2 * len(os.sched_getaffinity(0)), 16)
+    return min(3 * len(os.sched_getaffinity(0)), 16)
 
 
 def pytest_report_header():

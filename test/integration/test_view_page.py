@@ -421,7 +421,7 @@ def test_opacity_of_bodies_with_and_without_a_texture(tmp_path):
         '<box><size>0.2 0.2 0.2</size></box>', '<mesh><uri>mesh.obj</uri></mesh>').replace(
         '<material><diffuse>1 0 0 1</diffuse></material>', '').replace(
         '<link name="slide"/>', f'<link name="slide">{BOX}</link>'))
-    with browser(tmp_path / 'browser') as page, view_of(tmp_path) as address:
+    with view_of(tmp_path) as address, browser(tmp_path / 'browser') as page:
         page.call('Page.addScriptToEvaluateOnNewDocument', source="""
           window.__THREE_DEVTOOLS__ = new EventTarget();
           __THREE_DEVTOOLS__.addEventListener('observe', ({detail}) => {

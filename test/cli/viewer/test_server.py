@@ -4,6 +4,7 @@
 
 import html
 import re
+from socket import create_connection
 
 import pytest
 
@@ -12,6 +13,7 @@ from websockets.asyncio import server as websockets_server
 from websockets.datastructures import Headers
 from websockets.http11 import Request
 
+from sdf_pose_bridge.cli.viewer import server as server_module
 from sdf_pose_bridge.cli.viewer.frame_texts import html_of_data
 from sdf_pose_bridge.cli.viewer.server import (
     page_with_script,
@@ -75,3 +77,11 @@ def test_each_server_has_its_own_secret():
         server.stop()
     assert len(secrets) == 2
     assert all(len(secret) > 20 for secret in secrets)
+
+
+def test_connection_that_is_opened_in_advance_does_not_keep_it_from_ending(monkeypatch):
+    monkeypatch.setattr(server_module, '_LONGEST_HANDSHAKE_S', 0.1)
+    server, _ = server_for_its_owner(0, 'a.sdf')
+    with create_connection(('127.0.0.1', server.get_port()), timeout=8.0) as connection:
+        assert connection.recv(1) == b''
+    server.stop()
