@@ -23,9 +23,9 @@ from xml.parsers import expat
 
 from lxml import etree
 import numpy as np
+from numpy.typing import NDArray
 
 from sdf_pose_bridge.errors import FileReadError, PassingReadError, Place, SdfWarning
-from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.names import hint_from_names, shortened_message
 from sdf_pose_bridge.process_limits import raise_limits
 from sdf_pose_bridge.sdformat.limits import Usage
@@ -322,7 +322,7 @@ def _lines_and_warnings(
     return lines, warnings
 
 
-def _begins_of_elements(text: bytes) -> Indices:
+def _begins_of_elements(text: bytes) -> NDArray[np.intp]:
     """Return the offsets of all start tags, without those in comments and the like."""
     characters = np.frombuffer(text + b'/', np.uint8)
     begins = np.flatnonzero(characters == ord('<'))
@@ -331,6 +331,6 @@ def _begins_of_elements(text: bytes) -> Indices:
     for row in np.flatnonzero((second == ord('!')) | (second == ord('?'))).tolist():
         other = None if begins[row] < end else _OTHER_PART.match(text, begins[row])
         ends[row] = end = end if other is None else other.end()
-    begins_element: Indices = begins[
+    begins_of_elements: NDArray[np.intp] = begins[
         (second != ord('/')) & (np.maximum.accumulate(ends) <= begins)]
-    return begins_element
+    return begins_of_elements

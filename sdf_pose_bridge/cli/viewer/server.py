@@ -34,7 +34,7 @@ _HOSTS = r'(127\.0\.0\.1|localhost)(:[0-9]+)?'
 _PAGE_OF_VISER = Path(viser.__file__).parent / 'client/build/index.html'
 _TITLE = '<title>Viser</title>'
 _LONGEST_HANDSHAKE_S = 3.0
-"""The server cannot end before connections that a browser opens in advance have."""
+"""A browser opens connections in advance, and the server does not end before these."""
 
 
 class Events:
