@@ -14,7 +14,7 @@ TFMessage, TransformStamped, PoseStamped, PoseWithCovarianceStamped, Odometry an
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 import struct
 from typing import NamedTuple
@@ -45,6 +45,9 @@ of a message, which give the order of bytes."""
 
 MOST_BYTES = 1_000_000
 """Largest size of a message that is read; other callbacks wait meanwhile."""
+
+LONGEST_READ_S = 1.0 / 30.0
+"""Longest time in s to read messages at once, for the same reason."""
 
 _START = 4
 """Offset of the fields in a message, from which alignment is counted."""
@@ -187,18 +190,19 @@ class StampedPose(NamedTuple):
 
 
 def poses_from_bytes(
-    data: bytes, *, has_child: bool, is_sequence: bool = False) -> list[StampedPose]:
+    data: bytes, *, has_child: bool, is_sequence: bool = False) -> Iterator[StampedPose]:
     """
     Read a message with poses or transforms. Fields that follow a single pose are not read.
 
     :param data: the serialized message.
     :param has_child: whether its type has a child frame id.
     :param is_sequence: whether it is a TFMessage.
-    :raises ValueError: as for :func:`joint_state_from_bytes`.
+    :return: the poses, each of which is read when it is asked for.
+    :raises ValueError: as for :func:`joint_state_from_bytes`, where the message is not valid.
     """
     _check_encoding(data)
     stamp_and_length, length_format, _, pose_format = _FORMATS[data[:2]]
-    poses, place, count = [], _START, 1
+    place, count = _START, 1
     try:
         if is_sequence:
             count, = length_format.unpack_from(data, place)
@@ -213,11 +217,10 @@ def poses_from_bytes(
             place += (_START - place) % 8
             pose = pose_format.unpack_from(data, place)
             place += _NUMBERS
-            poses.append(StampedPose(_stamp_ns(sec, nanosec), frame_id, child_frame_id, pose))
+            yield StampedPose(_stamp_ns(sec, nanosec), frame_id, child_frame_id, pose)
     except struct.error as error:
         msg = f'it ends too early: {error}'
         raise ValueError(msg) from error
-    return poses
 
 
 def _check_encoding(data: bytes) -> None:

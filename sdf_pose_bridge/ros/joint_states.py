@@ -62,6 +62,9 @@ SILENCE_NS = NANOSECONDS
 """Time without a message, and two periods at least, after which a topic is silent. With less, each
 message of many slow robots would be published by itself."""
 
+LONGEST_ANSWER_S = 60.0
+"""Longest time in s to wait for the thread, which answers within a second unless it has failed."""
+
 _REST_S = 0.5
 _LONGEST_SLEEP_S, _CLOCK_PERIOD_S = 0.1, 0.01
 """Longest waits in a period: before too many messages wait, and for a simulated clock."""
@@ -140,10 +143,16 @@ class JointStates:
         self._call(lambda: self._due.update({self._publish_at_rest: 0.0}))
 
     def wait(self) -> None:
-        """Wait until all messages so far are processed."""
+        """
+        Wait until all messages so far are processed.
+
+        :raises TimeoutError: if the thread does not answer, after which the node has to end.
+        """
         has_come = threading.Event()
         self._call(has_come.set)
-        has_come.wait()
+        if not has_come.wait(LONGEST_ANSWER_S):
+            msg = 'the thread of joint states does not answer'
+            raise TimeoutError(msg)
 
     def current_lookup(self) -> Future:
         """Return a future for the look-up of poses, when all messages so far are processed."""

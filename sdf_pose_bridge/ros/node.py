@@ -201,13 +201,13 @@ class SdfPoseBridge:
     def _do_what_is_due(self) -> float:
         """Return the longest time in s until this has to be called again."""
         return min(
-            self._publish_what_is_due(), self._looking.call_if_due(),
-            self._looking_for_others.call_if_due(), self._visuals.go_on())
+            self._publish_what_is_due(), self._looking.call_if_due(), self._visuals.go_on())
 
     def _publish_what_is_due(self) -> float:
         """Do what is due also during a load; return the time in s until there is more."""
         return min(
-            self._publishing_again.call_if_due(), self._publishing_diagnostics.call_if_due())
+            self._publishing_again.call_if_due(), self._publishing_diagnostics.call_if_due(),
+            self._looking_for_others.call_if_due())
 
     def _look_at_files(self) -> None:
         if not self._settings.watch:

@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Collection, Sequence
 import contextlib
 from functools import partial
+import time
 
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.node import Node
@@ -16,7 +17,7 @@ from rclpy.subscription import Subscription
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from sdf_pose_bridge.ros.background import result_from_executor
-from sdf_pose_bridge.ros.cdr import poses_from_bytes
+from sdf_pose_bridge.ros.cdr import LONGEST_READ_S, poses_from_bytes
 from sdf_pose_bridge.ros.log_lines import names_in_line
 from sdf_pose_bridge.ros.published_frames import PublishedFrames, TF, TF_STATIC
 from sdf_pose_bridge.ros.publishers import Topic
@@ -26,8 +27,9 @@ from sdf_pose_bridge.tf.tree import TfTree
 OTHERS_PERIOD_S = 1.0
 """Period in s of :meth:`OtherPublishers.look`."""
 
-_MOST_WAITING = 500
-"""Largest number of messages that wait in a subscription, those of this node included."""
+_MOST_WAITING = 100
+"""Largest number of messages that wait in a subscription, those of this node included; then new
+ones replace the oldest."""
 
 _UNKNOWN_NODE = '_NODE_NAME_UNKNOWN_'
 """The name of a node in the middleware (rmw_dds_common) until it is discovered."""
@@ -55,6 +57,8 @@ class OtherPublishers:
     def look(self, frames: PublishedFrames) -> None:
         """
         Read what has come since the last call, and look for other publishers.
+
+        Of more messages than can be read in a short time, the others are not read.
 
         :param frames: the frames that this node publishes.
         """
@@ -91,17 +95,22 @@ class OtherPublishers:
                     self._node.destroy_subscription, self._subscriptions.pop(topic)))
 
     def _read(self, own_stamps_ns: Collection[int]) -> None:
+        ends_at = time.monotonic() + LONGEST_READ_S
         for topic, subscription in self._subscriptions.items():
             for _ in range(_MOST_WAITING):
                 taken = take_message(subscription)
                 if taken is None:
                     break
                 with contextlib.suppress(ValueError):  # it is too large, or not from a ROS node
-                    self._compare(topic, taken[0], own_stamps_ns)
+                    self._compare(topic, taken[0], own_stamps_ns, ends_at)
 
-    def _compare(self, topic: Topic, data: bytes, own_stamps_ns: Collection[int]) -> None:
+    def _compare(
+        self, topic: Topic, data: bytes, own_stamps_ns: Collection[int], ends_at: float,
+    ) -> None:
         """Report the first frame in a message of another node that this node publishes too."""
         for pose in poses_from_bytes(data, has_child=True, is_sequence=True):
+            if time.monotonic() > ends_at:
+                return
             child, other = pose.child_frame_id.lstrip('/'), pose.frame_id.lstrip('/')
             parent = self._parents.get(child)
             # On /tf, another node may give the same stamps to the same frames.

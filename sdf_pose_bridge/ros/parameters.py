@@ -19,6 +19,7 @@ from sdf_pose_bridge.ros.setting_rules import (
     anchors_setting,
     AUTO_KINDS,
     directories_setting,
+    frame_patterns_setting,
     HIGHEST_FREQUENCY,
     HIGHEST_RATE,
     kinds_setting,
@@ -279,7 +280,7 @@ class Settings:
         'Frames in the headers of these messages that are the same as root_frame.',
         'glob patterns for frame ids, such as */odom; at most 1000 patterns of at most 255 '
         'characters',
-        patterns_setting,
+        frame_patterns_setting,
     )
     simulator = Declaration(
         '',

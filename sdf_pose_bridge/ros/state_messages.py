@@ -4,11 +4,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from fnmatch import fnmatchcase
 from functools import partial
 import math
+import re
 import time
 from typing import NamedTuple
 
@@ -17,13 +17,14 @@ from numpy.typing import NDArray
 from rclpy.node import Node
 from rclpy.subscription import Subscription
 
-from sdf_pose_bridge.geometry.poses import Pose, pose_product
+from sdf_pose_bridge.geometry.poses import pose_products
 from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.names import hint_from_names
-from sdf_pose_bridge.ros.cdr import NANOSECONDS, SerializedNames, StampedPose
+from sdf_pose_bridge.ros.cdr import LONGEST_READ_S, NANOSECONDS, SerializedNames, StampedPose
 from sdf_pose_bridge.ros.log_lines import names_in_line
 from sdf_pose_bridge.ros.other_publishers import names_of_nodes, publishers_of_topic
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
+from sdf_pose_bridge.ros.setting_rules import MOST_CHARACTERS
 from sdf_pose_bridge.ros.wait_set import NO_NUMBER
 from sdf_pose_bridge.tf.joint_motion import NO_DOF
 from sdf_pose_bridge.tf.joint_positions import LARGEST_POSITION, Selection
@@ -36,7 +37,7 @@ BYTES_OF_OBJECTS = 2_000
 """Size that is counted for the objects of an effect, in addition to its names and rows."""
 
 _BYTES_OF_MODEL = 200
-"""Size that is counted for each model of an effect."""
+"""Size that is counted for each model of an effect, and for each frame id."""
 
 MOST_OFF_UNIT = 0.01
 """Largest difference of the norm of a quaternion from 1; it is made 1."""
@@ -94,7 +95,16 @@ class Message(NamedTuple):
     stamp_ns: int
     """Its stamp in nanoseconds; 0 if it has none."""
     frame_id: str = ''
-    """The frame in which the pose of a single model is given; empty for the root frame."""
+    """The frame in which the poses of models are given; empty for the root frame."""
+
+
+class PoseFrame(NamedTuple):
+    """The meaning of a frame id in the header of a pose."""
+
+    name: str | None
+    """The name of the frame; empty for the root frame, None if there is no such frame."""
+    first_dof: int = NO_DOF
+    """The first degree of freedom before it, as :meth:`PoseLookup.first_dof` finds it."""
 
 
 class Lateness(NamedTuple):
@@ -190,21 +200,25 @@ class StateSource:
 
         :param dof: the free model whose poses they are; None if their child frame ids name it.
         """
-        # Poses in the root frame with one stamp become one message.
-        groups: dict[tuple[int, str, int], dict[int, Sequence[float]]] = {}
-        unknown, others, invalid = [], [], []
+        # Poses in one frame with one stamp become one message.
+        groups: dict[tuple[int, str], dict[int, Sequence[float]]] = {}
+        unknown, others, carried, invalid = [], [], [], []
+        ends_at = time.monotonic() + LONGEST_READ_S
         for pose in poses:
             model = effects.models.get(pose.child_frame_id) if dof is None else dof
-            frame_id = '' if effects.is_root(pose.frame_id) else pose.frame_id
+            frame = None if model is None else effects.frame(pose.frame_id, ends_at)
             if model is None:
                 unknown.append(pose.child_frame_id)
-            elif frame_id and not effects.lookup.knows(frame_id):
-                others.append(frame_id)
+            elif frame is None:
+                pass  # it is looked up for a later message
+            elif frame.name is None:
+                others.append(pose.frame_id)
+            elif frame.first_dof == model:
+                carried.append(pose.frame_id)
             elif not abs(math.hypot(*pose.pose[3:]) - 1.0) <= MOST_OFF_UNIT:
                 invalid.append(pose.pose)
             else:
-                key = pose.stamp_ns, frame_id, model if frame_id else NO_DOF
-                groups.setdefault(key, {})[model] = (
+                groups.setdefault((pose.stamp_ns, frame.name), {})[model] = (
                     *pose.pose[:3], *canonical_quaternion(pose.pose[3:]))
         if unknown:
             self.warn_once('models', unknown, lambda: (
@@ -216,6 +230,10 @@ class StateSource:
                 f'{self.name} has poses in {names_in_line(others)}, which are ignored: there is '
                 'no such frame; if it is the same as the root frame, name it in '
                 'model_pose_frames'))
+        if carried:
+            self.warn('frame', lambda: (
+                f'a pose from {self.name} is ignored: {names_in_line(carried[:1])} moves with the '
+                'model'))
         if invalid:
             self.warn('pose', lambda: (
                 f'a pose from {self.name} is ignored: {invalid[0]} has no quaternion of length 1'))
@@ -223,7 +241,7 @@ class StateSource:
             Message(
                 effects.of_models(tuple(sorted(group)), self),
                 np.array([group[dof] for dof in sorted(group)]), stamp_ns, frame_id)
-            for (stamp_ns, frame_id, _), group in groups.items()]
+            for (stamp_ns, frame_id), group in groups.items()]
 
 
 class Effects:
@@ -232,17 +250,18 @@ class Effects:
 
     :param frames: the frames that messages move.
     :param lookup: looks up frames in which poses of models are given.
-    :param root_patterns: glob patterns of frame ids that mean the root frame.
+    :param root_patterns: patterns of frame ids that mean the root frame, compiled, by their texts.
     """
 
     def __init__(
         self, frames: PublishedMovingFrames, lookup: PoseLookup,
-        root_patterns: Sequence[str] = (),
+        root_patterns: Mapping[str, re.Pattern[str]],
     ) -> None:
         self.lookup = lookup
         self._positions = frames.positions
         self._frames = frames
         self._root_patterns = root_patterns
+        self._pose_frames: dict[str, PoseFrame] = {}
         # By the source, and the names of joints or the degrees of freedom of models.
         self._effects: dict[tuple[StateSource, tuple[object, ...]], Effect] = {}
         tree, motion = frames.tree, frames.frames.motion
@@ -297,22 +316,35 @@ class Effects:
             self._make_room(effect.rows.nbytes)
         return effect.rows
 
-    def is_root(self, frame_id: str) -> bool:
-        """Return whether a frame id in the header of a pose means the root frame."""
-        return frame_id in self._roots or any(
-            fnmatchcase(frame_id, pattern) for pattern in self._root_patterns)
+    def frame(self, frame_id: str, ends_at: float) -> PoseFrame | None:
+        """
+        Look up a frame id in the header of a pose; its meaning is kept.
+
+        :param ends_at: the monotonic time in s from which nothing is looked up.
+        :return: its meaning, or None if it is not kept and there is no time.
+        """
+        found = self._pose_frames.get(frame_id)
+        if found is None and time.monotonic() < ends_at:
+            if frame_id in self._roots or len(frame_id) <= MOST_CHARACTERS and any(
+                    pattern.match(frame_id) for pattern in self._root_patterns.values()):
+                found = PoseFrame('')
+            elif self.lookup.knows(frame_id):
+                found = PoseFrame(frame_id, self.lookup.first_dof(frame_id))
+            else:
+                found = PoseFrame(None)
+            self._make_room(_BYTES_OF_MODEL + len(frame_id))
+            self._pose_frames[frame_id] = found
+        return found
 
     def values(self, message: Message) -> NDArray[np.float64]:
         """
         Return the positions, or the poses in the root frame, that a message has.
 
-        :raises SdfError: if its pose is given in a frame whose pose is not known, or that moves
-            with the model.
+        :raises SdfError: if its poses are given in a frame whose pose is not known.
         """
         if not message.frame_id:
             return message.values
-        frame = self.lookup.pose_beside(message.frame_id, message.effect.selection.changed[0])
-        return np.array([pose_product(frame, Pose(*message.values[0].tolist()))])
+        return pose_products(np.array(self.lookup.pose(message.frame_id).pose), message.values)
 
     def note_lateness(self, effect: Effect, stamp_ns: int) -> None:
         """
@@ -385,5 +417,6 @@ class Effects:
         self._size += size
         if self._size > MOST_BYTES:
             self._effects.clear()
+            self._pose_frames.clear()
             self.last.clear()
             self._size = size

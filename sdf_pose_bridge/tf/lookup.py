@@ -4,15 +4,18 @@
 
 from __future__ import annotations
 
+import contextlib
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
 from sdf_pose_bridge.errors import JointPositionError, Place, UnknownFrameError
+from sdf_pose_bridge.geometry.chains import ends_from_pointers
 from sdf_pose_bridge.geometry.poses import canonical_relative_pose, Pose
 from sdf_pose_bridge.names import NameIndex
 from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.tf.joint_motion import NO_DOF
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.tree import TfTree
 
@@ -71,21 +74,19 @@ class PoseLookup:
         reference = self._found(relative_to or self._tree.root_frame)
         return FoundPose(self._relative_pose(reference, found), reference.frame_id)
 
-    def pose_beside(self, frame: str, dof: int) -> Pose:
+    def first_dof(self, frame: str) -> int:
         """
-        Look up the pose of a frame in the root frame, for a pose of a free model in this frame.
+        Find the first degree of freedom on the path from the root to a frame.
 
-        :param dof: the degree of freedom of the model.
-        :raises SdfError: as :meth:`pose` does, and if the frame moves with the model.
+        :return: its index, which is that of a free model if the frame moves with one; -1 for none,
+            and if the name is unknown or ambiguous.
         """
-        found = self._found(frame)
-        if self._tree.moving is not None:
-            motion = self._tree.moving.motion
-            is_model = np.arange(len(motion.moved_bodies)) == dof
-            if motion.last_chosen(is_model)[motion.last_dofs[found.owner]] == dof:
-                msg = f'"{frame}" moves with the model'
-                raise JointPositionError(msg, Place(self._scene.path))
-        return self._relative_pose(self._found(self._tree.root_frame), found)
+        moving = self._tree.moving
+        with contextlib.suppress(UnknownFrameError):
+            if moving is not None:
+                last = moving.motion.last_dofs[self._found(frame).owner]
+                return int(np.append(ends_from_pointers(moving.motion.previous), NO_DOF)[last])
+        return NO_DOF
 
     def is_frame_id(self, name: str) -> bool:
         """Return whether a frame of TF other than the root frame has a name."""

@@ -6,9 +6,11 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from changes import Monitor
+from changes import asked_to_reload, Monitor, world
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import TransformStamped
+from listener import latched
+from slow_file import SlowFile
 from tf2_msgs.msg import TFMessage
 
 
@@ -17,6 +19,22 @@ def test_two_bridges_of_one_name_report_each_other(start_bridge, file):
     for bridge in bridges:
         line = bridge.wait_for_line('is also published on /tf_static')
         assert 'by "/sdf_pose_bridge", with the parent ' in line
+
+
+def test_a_bridge_listens_to_others_while_it_reads_a_file(
+        start_bridge, tmp_path, start_listener):
+    slow = SlowFile(tmp_path / 'slow.sdf', world(1))
+    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={slow.path}').wait_until_started()
+    listener = start_listener()
+    slow.hold()
+    answer = asked_to_reload(listener)
+    with slow.opened():
+        transform = TransformStamped(child_frame_id='crate/body')
+        transform.header.frame_id = 'odom'
+        publisher = listener.node.create_publisher(TFMessage, '/tf_static', latched(1))
+        publisher.publish(TFMessage(transforms=[transform]))
+        bridge.wait_for_line('is also published on /tf_static by "/test_listener"')
+    assert listener.response(answer).success
 
 
 def test_another_parent_on_tf_is_in_the_log_and_in_diagnostics_until_its_node_is_gone(

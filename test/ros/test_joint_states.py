@@ -21,6 +21,7 @@ from std_msgs.msg import Header
 from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge import load_text
+from sdf_pose_bridge.ros import joint_states
 from sdf_pose_bridge.ros.given_parameters import settings_from_values
 from sdf_pose_bridge.ros.joint_states import (
     INITIAL_PERIOD_S,
@@ -315,6 +316,16 @@ def test_a_look_up_sees_the_messages_that_came_before_it(arm):
     goes_on.set()
     arm.wait(lambda: seen)
     assert 0.5 in seen
+
+
+def test_a_thread_that_does_not_answer_is_an_error(arm, monkeypatch):
+    goes_on = threading.Event()
+    arm.states._calls.append(goes_on.wait)
+    arm.states._wake()
+    monkeypatch.setattr(joint_states, 'LONGEST_ANSWER_S', 0.0)
+    with pytest.raises(TimeoutError):
+        arm.states.wait()
+    goes_on.set()
 
 
 def test_nothing_of_the_frames_before_is_published_once_others_are_followed(arm):

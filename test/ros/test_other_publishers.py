@@ -13,6 +13,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge import load_text
+from sdf_pose_bridge.ros import other_publishers
 from sdf_pose_bridge.ros.other_publishers import OtherPublishers
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
@@ -110,6 +111,23 @@ def test_other_frames_and_the_own_ones_are_not_reported(looking):
         looking.look()
     assert not looking.lines
     assert [each.topic_name for each in looking.node.subscriptions] == ['/tf_static']
+
+
+def test_messages_are_read_for_a_limited_time(looking, monkeypatch):
+    taken, take_message = [], other_publishers.take_message
+
+    def take(subscription):
+        taken.append(take_message(subscription))
+        return taken[-1]
+
+    monkeypatch.setattr(other_publishers, 'take_message', take)
+    monkeypatch.setattr(other_publishers, 'LONGEST_READ_S', 0.0)
+    looking.send('tool', 'odom')
+    looking.look_until(lambda: any(taken))
+    monkeypatch.undo()
+    assert not looking.lines
+    looking.look_until(
+        lambda: looking.lines, between=lambda: looking.send('tool', 'odom'))
 
 
 def test_after_other_frames_are_published_latched_messages_are_read_again(looking):

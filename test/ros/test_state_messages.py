@@ -13,10 +13,11 @@ from sdf_texts import joint, world_file
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.errors import JointPositionError
-from sdf_pose_bridge.ros.cdr import StampedPose
+from sdf_pose_bridge.ros.cdr import LONGEST_READ_S, StampedPose
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
-from sdf_pose_bridge.ros.state_messages import Effects, StateSource
+from sdf_pose_bridge.ros.setting_rules import frame_patterns_setting
+from sdf_pose_bridge.ros.state_messages import Effects, MOST_BYTES, StateSource
 from sdf_pose_bridge.ros.wait_set import NO_NUMBER
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.lookup import PoseLookup
@@ -40,7 +41,7 @@ class Models:
         self.positions = JointPositions(scene, tree.moving.motion)
         self.effects = Effects(
             PublishedFrames(Publishers(node), tree, self.positions, {}).moving,
-            PoseLookup(scene, tree, self.positions), ['*/odom'])
+            PoseLookup(scene, tree, self.positions), frame_patterns_setting(['*/odom']))
         self.source = StateSource(node, '/poses')
 
     def read(self, child='a', frame_id='', pose=TURNED, stamp_ns=5):
@@ -72,6 +73,8 @@ def test_frames_that_mean_the_root(models, frame_id):
     ({'child': 'fixed'}, '/poses has poses of "fixed", which are ignored: no model has'),
     ({'child': 'aa'}, 'another body; did you mean "a"?'),
     ({'frame_id': 'odom'}, '/poses has poses in "odom", which are ignored: there is no such'),
+    ({'frame_id': f'{"x" * 255}/odom'}, '/odom", which are ignored: there is no such'),
+    ({'frame_id': 'p/a/k'}, 'a pose from /poses is ignored: "p/a/k" moves with the model'),
     *(({'pose': (*TURNED[:3], *quat)}, 'has no quaternion of length 1') for quat in (
         (0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.02), (0.0, 0.0, float('nan'), 1.0),
         (float('inf'), 0.0, 0.0, 0.0))),
@@ -92,14 +95,40 @@ def test_poses_in_a_frame_of_the_tree_are_composed_with_it(models):
     assert models.effects.values(message).tolist() == [[1.0, 4.0, 3.0, 0.0, 0.0, 0.0, 1.0]]
 
 
-@pytest.mark.parametrize(('child', 'frame_id', 'words'), [
-    ('a::b', 'p/a/l', 'depends on the pose of model "a"'),
-    ('a', 'p/a/k', 'moves with the model'),
-])
-def test_a_frame_without_a_pose_of_its_own_is_refused(models, child, frame_id, words):
-    (message,) = models.read(child, frame_id)
-    with pytest.raises(JointPositionError, match=words):
+def test_a_frame_without_a_pose_of_its_own_is_refused(models):
+    (message,) = models.read('a::b', 'p/a/l')
+    with pytest.raises(JointPositionError, match='depends on the pose of model "a"'):
         models.effects.values(message)
+
+
+def test_frame_ids_are_looked_up_once_and_for_a_limited_time_in_a_message(models, monkeypatch):
+    now, looked_up = 0.0, []
+
+    def knows(name):
+        nonlocal now
+        now += 0.4 * LONGEST_READ_S
+        looked_up.append(name)
+        return name == 'p/fixed/l'
+
+    monkeypatch.setattr('time.monotonic', lambda: now)
+    models.effects.lookup.knows = knows
+    frame_ids = [*'abcdefg', 'p/fixed/l']
+    poses = [StampedPose(5, each, 'a', TURNED) for each in frame_ids]
+    found = [models.source.messages_from_poses(poses, models.effects) for _ in range(4)]
+    assert looked_up == frame_ids
+    assert [len(each) for each in found] == [0, 0, 1, 1]
+
+
+def test_the_meanings_of_frame_ids_take_a_limited_number_of_bytes(models):
+    looked_up = []
+    models.effects.lookup.knows = looked_up.append
+    for number in range(2 * MOST_BYTES // 100_000):
+        models.read(frame_id=f'{number} {"x" * 100_000}')
+    count = len(looked_up)
+    models.read(frame_id=looked_up[-1])
+    assert len(looked_up) == count
+    models.read(frame_id=looked_up[0])
+    assert len(looked_up) == count + 1
 
 
 def test_the_newest_message_of_a_model_counts(models):
@@ -118,18 +147,20 @@ def test_a_pose_moves_the_link_at_which_the_model_hangs(models):
     assert len(frames) == 1
 
 
-def test_poses_in_the_root_with_one_stamp_are_one_message(models):
+def test_poses_in_one_frame_with_one_stamp_are_one_message(models):
     poses = [
         StampedPose(stamp_ns, frame_id, child, (x, *TURNED[1:]))
         for x, child, stamp_ns, frame_id in (
             (1.0, 'a::b', 5, ''), (2.0, 'a', 5, 'w'), (3.0, 'a', 6, ''), (4.0, 'a', 5, ''),
-            (5.0, 'a::b', 5, 'p/fixed/l'))]
+            (5.0, 'a::b', 5, 'p/fixed/l'), (6.0, 'a', 5, 'p/fixed/l'))]
     messages = models.source.messages_from_poses(poses, models.effects)
     names = models.positions.names
     found = [
         ([names[dof] for dof in each.effect.selection.dofs], each.values[:, 0].tolist(),
          each.stamp_ns) for each in messages]
-    assert found == [(['a', 'a/b'], [4.0, 1.0], 5), (['a'], [3.0], 6), (['a/b'], [5.0], 5)]
+    assert found == [(['a', 'a/b'], [4.0, 1.0], 5), (['a'], [3.0], 6),
+        (['a', 'a/b'], [6.0, 5.0], 5)]
+    assert models.effects.values(messages[2])[:, :2].tolist() == [[6.0, 4.0], [5.0, 4.0]]
     again = models.source.messages_from_poses(poses[1::-1], models.effects)
     assert again[0].effect is messages[0].effect
 
