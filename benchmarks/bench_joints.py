@@ -138,7 +138,7 @@ def transforms_of_100_joints() -> Iterator[tuple[Function, Function | None]]:
         frames = PublishedFrames(Publishers(ros), tree, positions, {}).moving
         assert frames is not None
         topic = StateTopic(ros, TopicKey('joint_states', '', JOINT_STATE))
-        effects = Effects(frames, PoseLookup(scene, tree, positions), {})
+        effects = Effects(frames, PoseLookup(scene, tree, positions))
         broadcaster = JointBroadcaster(ros, 100, '/tf_of_counterpart')
         messages = joint_states(100)
         # The counterpart gets objects, which rclpy would have to make first.

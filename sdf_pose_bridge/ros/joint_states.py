@@ -24,7 +24,6 @@ import contextlib
 import math
 import threading
 import time
-import traceback
 from typing import NamedTuple
 
 import numpy as np
@@ -36,7 +35,7 @@ from rclpy.task import Future
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.ros.background import result_from_executor, wake
 from sdf_pose_bridge.ros.cdr import NANOSECONDS
-from sdf_pose_bridge.ros.log_lines import line_about_unreported, Unreported
+from sdf_pose_bridge.ros.log_lines import line_about_unreported, text_about_defect, Unreported
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
 from sdf_pose_bridge.ros.state_messages import Effect, Effects, Message, StateSource
@@ -143,16 +142,11 @@ class JointStates:
         self._call(lambda: self._due.update({self._publish_at_rest: 0.0}))
 
     def wait(self) -> None:
-        """
-        Wait until all messages so far are processed.
-
-        :raises TimeoutError: if the thread does not answer, after which the node has to end.
-        """
+        """Wait until all messages so far are processed; a thread that hangs ends the node."""
         has_come = threading.Event()
         self._call(has_come.set)
         if not has_come.wait(LONGEST_ANSWER_S):
-            msg = 'the thread of joint states does not answer'
-            raise TimeoutError(msg)
+            raise TimeoutError
 
     def current_lookup(self) -> Future:
         """Return a future for the look-up of poses, when all messages so far are processed."""
@@ -206,10 +200,8 @@ class JointStates:
                 break  # the node was destroyed
             except MemoryError:
                 raise
-            except Exception as error:  # noqa: BLE001 - includes defects
-                self._logger.error(
-                    f'internal error in joint states: {error}\n{traceback.format_exc()}',
-                    throttle_duration_sec=60.0)
+            except Exception:  # noqa: BLE001 - includes defects
+                self._logger.error(text_about_defect('joint states'), throttle_duration_sec=60.0)
         self._wait_set.close()
         self._make_calls(len(self._calls))
 

@@ -4,14 +4,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import compress
-from typing import NamedTuple
+import time
+import traceback
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from sdf_pose_bridge.errors import SdfError, UriLookupError
-from sdf_pose_bridge.names import printable, quoted_names
+from sdf_pose_bridge.names import printable, quoted_names, shortened_message
 from sdf_pose_bridge.problems import by_message, MOST_PROBLEMS
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.scene.scene import Scene
@@ -23,6 +25,40 @@ from sdf_pose_bridge.tf.tree import elements_in_model, TfTree
 
 MOST_LINES = 20
 """Largest number of errors, warnings or names in the log; a generated file may have thousands."""
+
+
+WARNING_PERIOD_S = 10.0
+"""Shortest period in s of warnings about the same thing."""
+
+MOST_REPORTED = 1000
+"""Largest number of names that are kept because they were reported."""
+
+
+class RareWarnings:
+    """
+    Logs warnings that many messages may cause, each of them rarely.
+
+    :param logger: the logger of the node.
+    """
+
+    def __init__(self, logger: Any) -> None:
+        self._logger = logger
+        self._warnings_due: dict[str, float] = {}
+        self._reported_names: set[str] = set()
+
+    def warn(self, about: str, text: Callable[[], str]) -> bool:
+        """Log a warning, unless the last one about the same was not long ago."""
+        now = time.monotonic()
+        is_due = now >= self._warnings_due.get(about, 0.0)
+        if is_due:
+            self._warnings_due[about] = now + WARNING_PERIOD_S
+            self._logger.warning(line_from_text(text()))
+        return is_due
+
+    def warn_once(self, about: str, names: Sequence[str], text: Callable[[], str]) -> None:
+        """Log a warning about names, unless all of them have been reported before."""
+        if not self._reported_names.issuperset(names) and self.warn(about, text):
+            self._reported_names.update(names[:MOST_REPORTED - len(self._reported_names)])
 
 
 class Unreported(NamedTuple):
@@ -40,6 +76,17 @@ class Unreported(NamedTuple):
     """A line for each source of messages with old stamps, and for other publishers of frames."""
 
 
+def line_from_text(text: object) -> str:
+    """Return text of others as one line for the log, with escapes and at most 2000 characters."""
+    return printable(shortened_message(str(text)))
+
+
+def text_about_defect(place: str) -> str:
+    """Return the exception that is being handled; its traceback is indented below a line."""
+    lines = traceback.format_exc().splitlines()[-MOST_PROBLEMS:]
+    return '\n    '.join([f'internal error in {place}:', *map(line_from_text, lines)])
+
+
 def lines_from_error(error: Exception) -> list[str]:
     """
     Return one line for each error.
@@ -52,20 +99,28 @@ def lines_from_error(error: Exception) -> list[str]:
         lines = [
             f'{each}{hint if isinstance(each, UriLookupError) else ""}{other_lines}'
             for each, other_lines in by_message(error.errors)]
-        return _first_lines(lines, 'error', '; "sdf_pose check" shows all of them')
+        return lines_from_warnings(lines, 'error', '; "sdf_pose check" shows all of them')
     if isinstance(error, SettingsError):
-        return _first_lines(error.sentences, 'error')
-    return [printable(str(error))]
+        return lines_from_warnings(error.sentences, 'error')
+    return [line_from_text(error)]
 
 
-def lines_from_warnings(warnings: Sequence[object]) -> list[str]:
+def lines_from_warnings(
+    warnings: Sequence[object], what: str = 'warning', hint: str = '',
+) -> list[str]:
     """
-    Return one line for each warning.
+    Return one line for each warning, or for other things.
 
     :param warnings: objects with a text for ``str``.
+    :param hint: the end of the line that counts the others.
     :return: at most ``MOST_LINES`` lines, and one more if there are more warnings.
     """
-    return _first_lines(warnings, 'warning')
+    lines = list(map(line_from_text, warnings[:MOST_LINES]))
+    rest = len(warnings) - len(lines)
+    if rest:
+        at_least = 'at least ' if len(warnings) > MOST_PROBLEMS else ''
+        lines.append(f'not shown: {at_least}{count_in_words(rest, f"more {what}")}{hint}')
+    return lines
 
 
 def names_in_line(names: Sequence[str]) -> str:
@@ -74,12 +129,13 @@ def names_in_line(names: Sequence[str]) -> str:
 
     :return: at most ``MOST_LINES`` names, and the number of the others.
     """
-    return printable(quoted_names(names, MOST_LINES))
+    return line_from_text(quoted_names(names, MOST_LINES))
 
 
 def line_about_frames(loaded: LoadedScene) -> str:
     """Return a line with the number of published frames, and their file."""
-    return f'publishing {count_in_words(len(loaded.tree.frame_ids), "frame")} of {loaded.path}'
+    count = count_in_words(len(loaded.tree.frame_ids), 'frame')
+    return line_from_text(f'publishing {count} of {loaded.path}')
 
 
 def lines_about_scene(loaded: LoadedScene) -> list[str]:
@@ -198,12 +254,3 @@ def count_in_words(number: int, what: str) -> str:
 
 def _children(tree: TfTree) -> set[str]:
     return set(compress(tree.frame_ids, (tree.parents != NO_PARENT).tolist()))
-
-
-def _first_lines(problems: Sequence[object], what: str, hint: str = '') -> list[str]:
-    lines = [printable(str(each)) for each in problems[:MOST_LINES]]
-    rest = len(problems) - len(lines)
-    if rest:
-        at_least = 'at least ' if len(problems) > MOST_PROBLEMS else ''
-        lines.append(f'not shown: {at_least}{count_in_words(rest, f"more {what}")}{hint}')
-    return lines

@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 import math
 import time
-import traceback
 from typing import Any, TYPE_CHECKING
 
 from rcl_interfaces.msg import SetParametersResult
@@ -30,10 +29,12 @@ from sdf_pose_bridge.ros.given_parameters import changed_settings, ParameterServ
 from sdf_pose_bridge.ros.log_lines import (
     line_about_frames,
     line_about_joints_at_rest,
+    line_from_text,
     lines_about_lost_frames,
     lines_about_scene,
     lines_from_error,
     lines_from_warnings,
+    text_about_defect,
     Unreported,
 )
 from sdf_pose_bridge.ros.other_publishers import OtherPublishers, OTHERS_PERIOD_S
@@ -269,7 +270,7 @@ class SdfPoseBridge:
             raise error
         if isinstance(error, SdfError | SettingsError | AddressError):
             return lines_from_error(error)
-        self._logger.error(f'internal error:\n{traceback.format_exc()}')
+        self._logger.error(text_about_defect('a request'))
         return [f'internal error, see the log of the node: {error!r}']
 
     # Publishing
@@ -369,7 +370,8 @@ class SdfPoseBridge:
     def _report_failure(self, lines: list[str]) -> None:
         if lines:
             source = self._settings.load_request.source
-            self._logger.error(f'{source} is rejected; the frames published before stay')
+            self._logger.error(
+                f'{line_from_text(source)} is rejected; the frames published before stay')
             for line in lines:
                 self._logger.error(line)
             self._diagnostics.update(self._loaded, lines)

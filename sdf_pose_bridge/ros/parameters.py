@@ -11,6 +11,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 import enum
+from fnmatch import translate
+import re
 from typing import Any, Generic, TypeVar
 
 from rclpy.parameter import Parameter
@@ -19,7 +21,6 @@ from sdf_pose_bridge.ros.setting_rules import (
     anchors_setting,
     AUTO_KINDS,
     directories_setting,
-    frame_patterns_setting,
     HIGHEST_FREQUENCY,
     HIGHEST_RATE,
     kinds_setting,
@@ -280,7 +281,8 @@ class Settings:
         'Frames in the headers of these messages that are the same as root_frame.',
         'glob patterns for frame ids, such as */odom; at most 1000 patterns of at most 255 '
         'characters',
-        frame_patterns_setting,
+        # Compiled here, as look-ups wait for the thread that uses them.
+        lambda values: [re.compile(translate(each)) for each in patterns_setting(values)],
     )
     simulator = Declaration(
         '',

@@ -16,7 +16,6 @@ import os
 import signal
 import sys
 import threading
-import traceback
 from typing import NamedTuple
 
 import rclpy
@@ -34,7 +33,12 @@ from sdf_pose_bridge.ros.given_parameters import (
     settings_from_node,
     warnings_about_unknown_parameters,
 )
-from sdf_pose_bridge.ros.log_lines import lines_from_error, lines_from_warnings
+from sdf_pose_bridge.ros.log_lines import (
+    line_from_text,
+    lines_from_error,
+    lines_from_warnings,
+    text_about_defect,
+)
 from sdf_pose_bridge.ros.middleware import use_profile
 from sdf_pose_bridge.ros.parameters import SettingsError, Value
 from sdf_pose_bridge.ros.published_frames import PublishedFrames, TF_STATIC
@@ -142,7 +146,7 @@ def run(args: Sequence[str], program_name: str, reader: SceneReader) -> int:
     except RuntimeError as error:
         _complain(program, _sentence_from_ros_error(error))
         return 1
-    node.get_logger().debug(sentence_about_profile)
+    node.get_logger().debug(line_from_text(sentence_about_profile))
     try:
         exit_code = _exit_code_from_node(node, program, reader, parameter_services, *words)
     except KeyboardInterrupt:
@@ -235,11 +239,9 @@ def _spin_once(
         executor.spin_once(longest_s)
     except MemoryError:
         end_without_memory()
-    except Exception as error:  # noqa: BLE001
+    except Exception:  # noqa: BLE001
         # A defect, or a message that rclpy rejects: a negative time on /clock.
-        node.get_logger().error(
-            f'internal error in a callback: {error}\n{traceback.format_exc()}',
-            throttle_duration_sec=60.0)
+        node.get_logger().error(text_about_defect('a callback'), throttle_duration_sec=60.0)
 
 
 def _log_warnings(node: Node, warnings: Sequence[object]) -> None:

@@ -22,6 +22,7 @@ from tf2_msgs.msg import TFMessage
 from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.ros.background import result_from_executor
 from sdf_pose_bridge.ros.cdr import StampedRecords
+from sdf_pose_bridge.ros.log_lines import line_from_text
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.publishers import Publishers, Topic
 from sdf_pose_bridge.ros.topic_names import pose_topics_from_patterns
@@ -53,7 +54,7 @@ def frames_from_scene(
         logger.warning(topics.warning)
     if logger.is_enabled_for(LoggingSeverity.DEBUG):
         for frame_id, name in topics.names.items():
-            logger.debug(f'frame "{frame_id}" has the topic ~/poses/{name}')
+            logger.debug(line_from_text(f'frame "{frame_id}" has the topic ~/poses/{name}'))
     try:
         if loaded.tree.moving is not None:
             # It declares parameters.

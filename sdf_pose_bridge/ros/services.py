@@ -7,7 +7,6 @@ from __future__ import annotations
 import array
 from collections.abc import Awaitable, Callable, Iterable
 from functools import partial
-import traceback
 from typing import Any, TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -33,6 +32,7 @@ from sdf_pose_bridge.geometry.formats import (
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import RotationError
 from sdf_pose_bridge.ros.background import Worker
+from sdf_pose_bridge.ros.log_lines import text_about_defect
 from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadedScene
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge_interfaces.srv import ConvertPoses, ConvertRotation, LookupPose, SetPose
@@ -206,7 +206,7 @@ def response_from_answer(
     except MemoryError:
         raise
     except Exception as error:  # noqa: BLE001 - whatever it is, the client must be answered
-        log_error(f'internal error in a service:\n{traceback.format_exc()}')
+        log_error(text_about_defect('a service'))
         response = type(response)()
         response.message = f'internal error, see the log of the node: {error!r}'
     else:

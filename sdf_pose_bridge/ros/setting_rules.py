@@ -10,9 +10,7 @@ raises ValueError with the end of a sentence that begins with "parameter <name>"
 from __future__ import annotations
 
 from collections.abc import Sequence
-from fnmatch import translate
 from pathlib import Path
-import re
 
 from rclpy.exceptions import InvalidTopicNameException
 from rclpy.validate_topic_name import validate_topic_name
@@ -96,11 +94,6 @@ def patterns_setting(values: Sequence[str]) -> tuple[str, ...]:
     for value in values:
         _check_length(value, MOST_CHARACTERS)
     return tuple(values)
-
-
-def frame_patterns_setting(values: Sequence[str]) -> dict[str, re.Pattern[str]]:
-    """Return patterns by their texts, compiled in the thread that sets parameters."""
-    return {value: re.compile(translate(value)) for value in patterns_setting(values)}
 
 
 def topic_patterns_setting(values: Sequence[str]) -> tuple[str, ...]:

@@ -113,17 +113,19 @@ class Simulator(StateSource):
         if answer.result.result != _RESULT_OK:
             self._report(
                 f'the simulator answers with result {answer.result.result}, which is not OK: '
-                f'{answer.result.error_message or "it gives no reason"}')
+                f'{answer.result.error_message or "it gives no reason"}',
+                f'result {answer.result.result}')
             return
         self._report('')
         self._answers.append(answer)
         self._wake()
 
-    def _report(self, problem: str) -> None:
-        """Log a problem, unless it was the last one."""
-        if problem and problem != self._problem:
-            self._logger.warning(f'no poses of models from {self.name}: {problem}')
-        self._problem = problem
+    def _report(self, problem: str, about: str = '') -> None:
+        """Log a problem, unless the last one was the same, or about the same."""
+        about = about or problem
+        if not problem or (about != self._problem and self.warn(
+                about, lambda: f'no poses of models from {self.name}: {problem}')):
+            self._problem = about
 
 
 def _poses(answer: Any) -> Iterator[StampedPose]:

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 import math
@@ -21,7 +21,7 @@ from sdf_pose_bridge.geometry.poses import pose_products
 from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.ros.cdr import LONGEST_READ_S, NANOSECONDS, SerializedNames, StampedPose
-from sdf_pose_bridge.ros.log_lines import names_in_line
+from sdf_pose_bridge.ros.log_lines import names_in_line, RareWarnings
 from sdf_pose_bridge.ros.other_publishers import names_of_nodes, publishers_of_topic
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
 from sdf_pose_bridge.ros.setting_rules import MOST_CHARACTERS
@@ -48,11 +48,6 @@ LATE_S = 1.0
 _LEAST_AGE_NS = 1_000_000
 """Smallest difference that makes a stamp old. Stamps are the same while a simulation pauses, and
 one nanosecond newer after a reload."""
-
-_MOST_REPORTED = 1000
-"""Largest number of names that a source keeps because it has reported them."""
-
-_WARNING_PERIOD_S = 10.0
 
 _LEAST_OLDER = 3
 """Smallest number of messages in a period the numbers of which do not go up, if there are several
@@ -98,15 +93,6 @@ class Message(NamedTuple):
     """The frame in which the poses of models are given; empty for the root frame."""
 
 
-class PoseFrame(NamedTuple):
-    """The meaning of a frame id in the header of a pose."""
-
-    name: str | None
-    """The name of the frame; empty for the root frame, None if there is no such frame."""
-    first_dof: int = NO_DOF
-    """The first degree of freedom before it, as :meth:`PoseLookup.first_dof` finds it."""
-
-
 class Lateness(NamedTuple):
     """Messages of a source that move nothing, as their stamps are old."""
 
@@ -117,7 +103,7 @@ class Lateness(NamedTuple):
     """Their last stamp."""
 
 
-class StateSource:
+class StateSource(RareWarnings):
     """
     A source of messages about joints or models.
 
@@ -136,9 +122,7 @@ class StateSource:
         self.number = NO_NUMBER
         """The number that its publisher has given the last message."""
         self._node = node
-        self._logger = node.get_logger()
-        self._warnings_due: dict[str, float] = {}
-        self._reported_names: set[str] = set()
+        super().__init__(node.get_logger())
 
     @property
     def has_answers(self) -> bool:
@@ -178,20 +162,6 @@ class StateSource:
                 f'{self.name} has values for {names_in_line(names)} that are not finite or '
                 f'beyond {LARGEST_POSITION:g}; the last ones are kept'))
 
-    def warn(self, about: str, text: Callable[[], str]) -> bool:
-        """Log a warning, unless the last one about the same was not long ago."""
-        now = time.monotonic()
-        is_due = now >= self._warnings_due.get(about, 0.0)
-        if is_due:
-            self._warnings_due[about] = now + _WARNING_PERIOD_S
-            self._logger.warning(text())
-        return is_due
-
-    def warn_once(self, about: str, names: Sequence[str], text: Callable[[], str]) -> None:
-        """Log a warning about names, unless all of them have been reported before."""
-        if not self._reported_names.issuperset(names) and self.warn(about, text):
-            self._reported_names.update(names[:_MOST_REPORTED - len(self._reported_names)])
-
     def messages_from_poses(
         self, poses: Iterable[StampedPose], effects: Effects, dof: int | None = None,
     ) -> list[Message]:
@@ -206,19 +176,18 @@ class StateSource:
         ends_at = time.monotonic() + LONGEST_READ_S
         for pose in poses:
             model = effects.models.get(pose.child_frame_id) if dof is None else dof
-            frame = None if model is None else effects.frame(pose.frame_id, ends_at)
             if model is None:
                 unknown.append(pose.child_frame_id)
-            elif frame is None:
-                pass  # it is looked up for a later message
-            elif frame.name is None:
+            elif (found := effects.pose_frame(pose.frame_id, ends_at)) is None:
+                pass  # there is time when the next message comes
+            elif found[0] is None:
                 others.append(pose.frame_id)
-            elif frame.first_dof == model:
+            elif found[1] == model:
                 carried.append(pose.frame_id)
             elif not abs(math.hypot(*pose.pose[3:]) - 1.0) <= MOST_OFF_UNIT:
                 invalid.append(pose.pose)
             else:
-                groups.setdefault((pose.stamp_ns, frame.name), {})[model] = (
+                groups.setdefault((pose.stamp_ns, found[0]), {})[model] = (
                     *pose.pose[:3], *canonical_quaternion(pose.pose[3:]))
         if unknown:
             self.warn_once('models', unknown, lambda: (
@@ -250,18 +219,18 @@ class Effects:
 
     :param frames: the frames that messages move.
     :param lookup: looks up frames in which poses of models are given.
-    :param root_patterns: patterns of frame ids that mean the root frame, compiled, by their texts.
+    :param root_patterns: patterns of frame ids that mean the root frame.
     """
 
     def __init__(
         self, frames: PublishedMovingFrames, lookup: PoseLookup,
-        root_patterns: Mapping[str, re.Pattern[str]],
+        root_patterns: Sequence[re.Pattern[str]] = (),
     ) -> None:
         self.lookup = lookup
         self._positions = frames.positions
         self._frames = frames
         self._root_patterns = root_patterns
-        self._pose_frames: dict[str, PoseFrame] = {}
+        self._pose_frames: dict[str, tuple[str | None, int]] = {}
         # By the source, and the names of joints or the degrees of freedom of models.
         self._effects: dict[tuple[StateSource, tuple[object, ...]], Effect] = {}
         tree, motion = frames.tree, frames.frames.motion
@@ -316,22 +285,20 @@ class Effects:
             self._make_room(effect.rows.nbytes)
         return effect.rows
 
-    def frame(self, frame_id: str, ends_at: float) -> PoseFrame | None:
+    def pose_frame(self, frame_id: str, ends_at: float) -> tuple[str | None, int] | None:
         """
-        Look up a frame id in the header of a pose; its meaning is kept.
+        Look up a frame id in the header of a pose, and keep what is found.
 
         :param ends_at: the monotonic time in s from which nothing is looked up.
-        :return: its meaning, or None if it is not kept and there is no time.
+        :return: the name of the frame, which is empty for the root frame, or None if there is no
+            such frame; and its :meth:`PoseLookup.first_dof`. None if it was not looked up.
         """
         found = self._pose_frames.get(frame_id)
         if found is None and time.monotonic() < ends_at:
-            if frame_id in self._roots or len(frame_id) <= MOST_CHARACTERS and any(
-                    pattern.match(frame_id) for pattern in self._root_patterns.values()):
-                found = PoseFrame('')
-            elif self.lookup.knows(frame_id):
-                found = PoseFrame(frame_id, self.lookup.first_dof(frame_id))
-            else:
-                found = PoseFrame(None)
+            is_root = frame_id in self._roots or (len(frame_id) <= MOST_CHARACTERS and any(
+                pattern.match(frame_id) for pattern in self._root_patterns))
+            name = '' if is_root else frame_id if self.lookup.knows(frame_id) else None
+            found = name, self.lookup.first_dof(frame_id) if name else NO_DOF
             self._make_room(_BYTES_OF_MODEL + len(frame_id))
             self._pose_frames[frame_id] = found
         return found

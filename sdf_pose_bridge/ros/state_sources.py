@@ -11,7 +11,7 @@ from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
 from sdf_pose_bridge.ros.background import result_from_executor
-from sdf_pose_bridge.ros.log_lines import names_in_line
+from sdf_pose_bridge.ros.log_lines import line_from_text, names_in_line
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.simulator import Simulator
 from sdf_pose_bridge.ros.state_messages import StateSource
@@ -125,7 +125,7 @@ class StateSources:
             self._topics[key] = StateTopic(self._node, key)
         except (RuntimeError, ValueError) as error:
             # Security may forbid it. The rest of the message names lines of the source of ROS.
-            reason = str(error).partition(', at /')[0]
+            reason = line_from_text(str(error).partition(', at /')[0])
             self._logger.warning(f'no subscription to {key.name}: {reason}')
 
     def _find_publishers(self) -> None:

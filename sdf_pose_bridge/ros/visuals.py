@@ -11,7 +11,7 @@ from rclpy.node import Node
 from visualization_msgs.msg import MarkerArray
 
 from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.ros.log_lines import lines_from_error, lines_from_warnings
+from sdf_pose_bridge.ros.log_lines import line_from_text, lines_from_error, lines_from_warnings
 from sdf_pose_bridge.ros.publishers import SwitchedPublisher, Topic
 from sdf_pose_bridge.ros.scene_reader import SceneReader
 from sdf_pose_bridge.ros.visual_messages import serialized_markers_from_text
@@ -82,4 +82,4 @@ class VisualPublisher:
 
     def _warn(self, reasons: list[str]) -> None:
         for reason in reasons:
-            self._logger.warning(f'~/visuals is not updated: {reason}')
+            self._logger.warning(f'~/visuals is not updated: {line_from_text(reason)}')

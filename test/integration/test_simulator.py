@@ -32,7 +32,8 @@ class Simulator:
     def _answer(self, request, response):
         self.requests.append(request)
         self.sec += 1
-        response.result.result, response.result.error_message = self.result, 'it is paused'
+        response.result.result = self.result
+        response.result.error_message = f'paused\n[FATAL] at {self.sec}'
         for name, x in self._x_of_entities.items():
             if re.search(request.filters.filter, name):
                 state = EntityState()
@@ -72,7 +73,8 @@ def test_a_simulator_may_start_later_and_be_stopped(bridge, tf):
     tf.listener.wait(lambda: len(simulator.requests) > 2, lambda: 'calls')
     simulator.result = Result.RESULT_OK
     tf.listener.wait(lambda: 'cart/deck' in tf.last, lambda: tf.last)
-    bridge.wait_for_line('the simulator answers with result 3, which is not OK: it is paused')
+    bridge.wait_for_line(
+        r'the simulator answers with result 3, which is not OK: paused\n[FATAL] at 5001')
     assert sum('no poses of models' in line for line in bridge.lines) == 2
 
 

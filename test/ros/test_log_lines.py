@@ -2,6 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """What goes to the log: one line for each thing, whatever names a file holds."""
 
+import ast
+from pathlib import Path
+import re
+
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
@@ -12,16 +16,20 @@ import urdf_texts as urdf
 
 from sdf_pose_bridge.errors import LoadError, ParsingError, Place, SdfError
 from sdf_pose_bridge.problems import MOST_PROBLEMS
+from sdf_pose_bridge.ros import log_lines
 from sdf_pose_bridge.ros.log_lines import (
     line_about_detached_models,
     line_about_gazebo,
     line_about_joints_at_rest,
     line_about_prefix,
     line_about_unreported,
+    line_from_text,
     lines_about_lost_frames,
+    lines_about_scene,
     lines_from_error,
     lines_from_warnings,
     MOST_LINES,
+    text_about_defect,
     Unreported,
 )
 from sdf_pose_bridge.ros.parameters import SettingsError
@@ -30,7 +38,14 @@ from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.joint_positions import JointPositions
+from sdf_pose_bridge.tf.loaded_scene import LoadRequest
+from sdf_pose_bridge.tf.loading import loaded_scene_from_request
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
+
+AXIS = '<axis><xyz>0 0 1</xyz>{}</axis>'
+MIMIC = ('<mimic joint="j"><multiplier>2</multiplier><offset>0</offset><reference>0</reference>'
+         '</mimic>')
+ENDS = '<parent>{}</parent><child>{}</child>'
 
 
 def test_each_error_of_a_file_has_its_line_with_its_place():
@@ -77,6 +92,78 @@ def test_a_flood_of_sentences_about_settings_ends_with_its_size():
 ])
 def test_a_name_cannot_write_a_line_of_its_own(name, shown):
     assert lines_from_error(ParsingError(name, Place('f'))) == [f'f: PARSING_ERROR: {shown}']
+
+
+def test_text_of_others_is_one_short_line():
+    line = line_from_text('a\n[FATAL] ' + 'x' * 10_000)
+    assert line.startswith(r'a\n[FATAL] xxx')
+    assert len(line) < 2100
+
+
+def test_the_traceback_of_a_defect_writes_no_line_of_the_log():
+    try:
+        raise ValueError('a\n[FATAL] b\x1b[2J\n' * 1000)
+    except ValueError:
+        first, *lines = text_about_defect('a test').split('\n')
+    assert first == 'internal error in a test:'
+    assert all(line.startswith('    ') and line.isprintable() for line in lines)
+    assert len(lines) == 100
+
+
+def test_names_and_paths_cannot_write_lines_of_their_own(tmp_path):
+    path, name = tmp_path / 'a\n[FATAL] b.sdf', 'a\n[FATAL] b'
+    path.write_text(world_file(
+        '<model name="m&#10;[FATAL]"><link name="a"/><link name="b"/>'
+        + joint(ENDS.format('a', 'b') + AXIS.format(''), 'j', 'revolute') + '</model>'))
+    loaded = loaded_scene_from_request(LoadRequest(
+        str(path), '', tf_options=TfOptions(anchor_models=AnchorModels.NONE)))
+    empty = tree_of(world_file(''))
+    lines = [
+        *lines_about_scene(loaded), *lines_about_lost_frames(loaded.tree, empty),
+        line_about_unreported(Unreported(1, name)),
+        line_about_unreported(Unreported(models=[name])),
+        line_about_joints_at_rest(loaded.scene, '', FrameNames.AUTO),
+        *lines_from_error(SettingsError([name])), *lines_from_error(ValueError(name)),
+        *lines_from_warnings([name])]
+    assert len(lines) == 9
+    assert [r'\n[FATAL]' in line and line.isprintable() for line in lines] == [True] * 9
+
+
+HARMLESS = {
+    # Results of the functions of log_lines, or of functions that use them for names.
+    'line', 'reason', 'topics.warning',
+    # Numbers, words of this package, and names of topics, which ROS has checked.
+    '1000.0 * seconds', 'MOST_PUBLISHERS', 'count', 'len(self._publishers)', 'models', 'name',
+    'key.name', 'self._settings.publish_rate', 'source.name',
+}
+
+
+def parts(text):
+    """Return what an expression puts into a text, without calls of the functions of log_lines."""
+    if isinstance(text, ast.JoinedStr):
+        return [each for value in text.values for each in parts(value)]
+    if isinstance(text, ast.FormattedValue):
+        return parts(text.value)
+    if isinstance(text, ast.IfExp):
+        return parts(text.body) + parts(text.orelse)
+    if isinstance(text, ast.Call) and isinstance(text.func, ast.Name) and hasattr(
+            log_lines, text.func.id):
+        return []
+    return [] if isinstance(text, ast.Constant) else [ast.unparse(text)]
+
+
+def logged_texts():
+    for path in Path(log_lines.__file__).parent.glob('*.py'):
+        for call in ast.walk(ast.parse(path.read_text())):
+            if isinstance(call, ast.Call) and re.search(
+                    r'(logger(\(\))?\.(debug|info|warning|error|fatal)|log_error)$',
+                    ast.unparse(call.func)):
+                yield pytest.param(call.args[0], id=f'{path.name} {call.lineno}')
+
+
+@pytest.mark.parametrize('text', list(logged_texts()))
+def test_all_text_of_others_that_is_logged_goes_through_one_function(text):
+    assert HARMLESS.issuperset(parts(text))
 
 
 def test_a_flood_that_the_load_has_cut_has_no_exact_size():
@@ -131,12 +218,6 @@ def test_joints_that_stand_still_are_counted_where_they_are_published():
     assert '1 joint that can move, for example "right/j";' in line_about_joints_at_rest(
         scene, 'right', FrameNames.AUTO)
     assert line_about_joints_at_rest(load_text(world_file(still)), '', FrameNames.AUTO) == ''
-
-
-AXIS = '<axis><xyz>0 0 1</xyz>{}</axis>'
-MIMIC = ('<mimic joint="j"><multiplier>2</multiplier><offset>0</offset><reference>0</reference>'
-         '</mimic>')
-ENDS = '<parent>{}</parent><child>{}</child>'
 
 
 @pytest.mark.parametrize('content', [

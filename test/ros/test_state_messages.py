@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What poses of models change, and the ones that are ignored."""
 
+import re
 import time
 
 import pytest
@@ -16,7 +17,6 @@ from sdf_pose_bridge.errors import JointPositionError
 from sdf_pose_bridge.ros.cdr import LONGEST_READ_S, StampedPose
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
-from sdf_pose_bridge.ros.setting_rules import frame_patterns_setting
 from sdf_pose_bridge.ros.state_messages import Effects, MOST_BYTES, StateSource
 from sdf_pose_bridge.ros.wait_set import NO_NUMBER
 from sdf_pose_bridge.tf.joint_positions import JointPositions
@@ -41,7 +41,7 @@ class Models:
         self.positions = JointPositions(scene, tree.moving.motion)
         self.effects = Effects(
             PublishedFrames(Publishers(node), tree, self.positions, {}).moving,
-            PoseLookup(scene, tree, self.positions), frame_patterns_setting(['*/odom']))
+            PoseLookup(scene, tree, self.positions), [re.compile('.*/odom')])
         self.source = StateSource(node, '/poses')
 
     def read(self, child='a', frame_id='', pose=TURNED, stamp_ns=5):

@@ -42,7 +42,7 @@ class Robots:
         self.positions = JointPositions(scene, tree.moving.motion, unreported=unreported)
         self.effects = Effects(
             PublishedFrames(Publishers(node), tree, self.positions, {}).moving,
-            PoseLookup(scene, tree, self.positions), {})
+            PoseLookup(scene, tree, self.positions))
 
     def topic(self, name='a/j', model='a'):
         return StateTopic(self._node, TopicKey(name, model, JOINT_STATE))
