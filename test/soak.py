@@ -19,8 +19,9 @@ import sys
 import tempfile
 import time
 
-from bridge_process import BridgeProcess, SECONDS
+from bridge_process import BridgeProcess
 from changes import BRIDGE, last_x, listen_to_tf, replace, usage_of, world
+from deadline import DEADLINE_S
 from geometry_msgs.msg import PoseStamped, TransformStamped
 from listener import latched, Listener
 import numpy as np
@@ -72,7 +73,7 @@ def call(domain, last, results):
             x = listener.call(LookupPose, f'{BRIDGE}/lookup_pose', request).pose.pose.position.x
             count += 1
             if last.value:
-                ends_at = min(ends_at, time.monotonic() + SECONDS)
+                ends_at = min(ends_at, time.monotonic() + DEADLINE_S)
             time.sleep(PERIOD_S)
     results.put(('caller', count, x == last.value))
     listener.end()
@@ -106,7 +107,7 @@ def soak(folder, minutes, domain):
         client.start()
     rows, number = rewrite(path, 60.0 * minutes, bridge.pid)
     last.value = number
-    found = [results.get(timeout=60.0) for _ in clients]
+    found = [results.get(timeout=DEADLINE_S) for _ in clients]
     for client in clients:
         client.join()
     bridge.end()

@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 
+from deadline import DEADLINE_S
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -48,7 +49,7 @@ def run_bare(folders, program):
     start = f'import re, sys\nsys.path[:0] = {folders!r}\npattern = {ROS_NAME.pattern!r}\n'
     done = subprocess.run(
         [sys.executable, '-I', '-S', '-B', '-c', start + program],
-        capture_output=True, text=True, env={}, timeout=60, check=False)
+        capture_output=True, text=True, env={}, timeout=DEADLINE_S, check=False)
     assert done.returncode == 0, done.stderr
     return done.stdout
 

@@ -10,6 +10,7 @@ import sys
 import sysconfig
 
 from command_line import executable_of_workspace, skip_without
+from deadline import DEADLINE_S
 import mesh_texts
 import pytest
 
@@ -30,7 +31,7 @@ def prefix_of_wheel(tmp_path_factory):
     subprocess.run(
         [sys.executable, '-m', 'pip', '--quiet', '--disable-pip-version-check', 'install',
          '--no-deps', '--no-index', '--no-build-isolation', '--no-compile', '--ignore-installed',
-         '--prefix', folder / 'prefix', folder / 'source'], check=True, timeout=120)
+         '--prefix', folder / 'prefix', folder / 'source'], check=True, timeout=DEADLINE_S)
     return folder / 'prefix'
 
 
@@ -59,7 +60,8 @@ def test_meshes_are_read_however_the_program_is_started(started, tmp_path):
     command, path = started
     done = subprocess.run(
         [*command, 'view', 'mesh.sdf', '-o', 'page.html'], cwd=tmp_path, text=True,
-        env={**os.environ, 'PYTHONPATH': path}, capture_output=True, timeout=120, check=False)
+        env={**os.environ, 'PYTHONPATH': path}, capture_output=True, check=False,
+        timeout=DEADLINE_S)
     assert (done.returncode, done.stdout, done.stderr) == (0, '', '')
 
 
@@ -69,7 +71,7 @@ def test_executables_can_be_imported(name, tmp_path):
     done = subprocess.run(
         [sys.executable, '-c', f'import runpy; runpy.run_path({executable!r}, run_name="other")'],
         env={**os.environ, 'PYTHONPATH': path}, cwd=tmp_path, text=True, capture_output=True,
-        timeout=60, check=False)
+        timeout=DEADLINE_S, check=False)
     assert (done.returncode, done.stdout, done.stderr) == (0, '', '')
 
 

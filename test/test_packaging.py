@@ -14,6 +14,7 @@ import sys
 import xml.etree.ElementTree as ET
 
 from command_line import skip_without
+from deadline import DEADLINE_S
 import pytest
 
 import sdf_pose_bridge
@@ -235,7 +236,7 @@ def test_tests_are_collected_where_modules_are_missing():
         '"-p", "no:cacheprovider"]))')
     done = subprocess.run(
         [sys.executable, '-c', code], cwd=ROOT, capture_output=True, text=True, check=False,
-        timeout=120, env={**os.environ, 'PYTEST_DISABLE_PLUGIN_AUTOLOAD': '1'})
+        timeout=DEADLINE_S, env={**os.environ, 'PYTEST_DISABLE_PLUGIN_AUTOLOAD': '1'})
     assert done.returncode == 0, done.stdout
     assert 'needs hypothesis' in done.stdout
     assert 'needs mpmath' in done.stdout

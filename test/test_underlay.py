@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 
+from deadline import DEADLINE_S
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -63,7 +64,7 @@ def make_underlay(checkout, **environment):
         'PATH': os.environ['PATH'], 'SDF_POSE_BRIDGE_ROS_PREFIX': '', **environment}
     return subprocess.run(
         ['bash', str(checkout / 'underlay/make_underlay')], env=environment, text=True,
-        capture_output=True, stdin=subprocess.DEVNULL, timeout=60, check=False)
+        capture_output=True, stdin=subprocess.DEVNULL, timeout=DEADLINE_S, check=False)
 
 
 def assert_refused_with(result, *words):
@@ -78,7 +79,7 @@ def assert_refused_with(result, *words):
 def shell(script, **environment):
     return subprocess.run(
         ['bash', '-c', script], env={**os.environ, **environment}, text=True,
-        capture_output=True, stdin=subprocess.DEVNULL, timeout=60, check=False)
+        capture_output=True, stdin=subprocess.DEVNULL, timeout=DEADLINE_S, check=False)
 
 
 @pytest.mark.parametrize(('program', 'environment', 'words'), [

@@ -10,8 +10,7 @@ import subprocess
 import threading
 import time
 
-SECONDS = 20.0
-"""Deadline for anything that a test waits for, far beyond what it takes on a busy machine."""
+from deadline import DEADLINE_S, wait_until
 
 STARTED = ': publishing '
 """In the line that the node logs when it has published and offers its services."""
@@ -57,7 +56,7 @@ class LoggedProcess:
             return lines[number - 1] if len(lines) >= number else None
 
         with self._has_changed:
-            self._has_changed.wait_for(lambda: found() or self._has_ended, SECONDS)
+            self._has_changed.wait_for(lambda: found() or self._has_ended, DEADLINE_S)
             line = found()
         assert line is not None, f'no line with "{text}" but:\n' + '\n'.join(self.lines)
         return line
@@ -79,12 +78,11 @@ class LoggedProcess:
         self._wait_for_status(lambda status: status['State'] == 'S', 'sleep')
 
     def _wait_for_status(self, condition, what):
-        deadline = time.monotonic() + SECONDS
-        tick = threading.Event()
-        while not condition(self._status()):
+        def has_come():
             assert self._process.poll() is None, '\n'.join(self.lines)
-            assert time.monotonic() < deadline, f'waited in vain for {what}'
-            tick.wait(0.001)
+            return condition(self._status())
+
+        wait_until(has_come, lambda: time.sleep(0.001), lambda: what)
 
     def _status(self):
         text = Path(f'/proc/{self.pid}/status').read_text(encoding='ascii')
@@ -114,8 +112,8 @@ class LoggedProcess:
 
     def wait_for_end(self):
         """Wait until the process has ended, and return its exit code."""
-        code = self._process.wait(SECONDS)
-        self._reader.join(SECONDS)
+        code = self._process.wait(DEADLINE_S)
+        self._reader.join(DEADLINE_S)
         return code
 
     def end(self):
@@ -123,11 +121,11 @@ class LoggedProcess:
         if self._process.poll() is None:
             self.send(signal.SIGINT)
             try:
-                self._process.wait(SECONDS)
+                self._process.wait(DEADLINE_S)
             except subprocess.TimeoutExpired:
                 self._process.kill()
                 self._process.wait()
-        self._reader.join(SECONDS)
+        self._reader.join(DEADLINE_S)
         self._process.stdout.close()
 
 

@@ -11,6 +11,7 @@ import time
 from urllib.parse import urlsplit
 from urllib.request import Request, urlopen
 
+from deadline import DEADLINE_S, wait_until
 import pytest
 
 OPTIONS = (
@@ -18,7 +19,6 @@ OPTIONS = (
     '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run',
     '--disable-background-networking', '--disable-component-update', '--disable-sync',
     '--remote-debugging-port=0')
-DEADLINE_S = 120.0
 
 
 class Browser:
@@ -57,10 +57,8 @@ class Browser:
 
     def wait_for(self, script):
         """Wait until an expression is true."""
-        end = time.monotonic() + DEADLINE_S
-        while not self.run(f'Boolean({script})'):
-            assert time.monotonic() < end, f'this never became true: {script}'
-            time.sleep(0.05)
+        wait_until(
+            lambda: self.run(f'Boolean({script})'), lambda: time.sleep(0.05), lambda: script)
 
     def size(self, width, height):
         self.call('Emulation.setDeviceMetricsOverride', width=width, height=height,

@@ -10,7 +10,7 @@ import os
 from pathlib import Path
 import time
 
-from bridge_process import SECONDS
+from deadline import wait_until
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from listener import latched
 from rcl_interfaces.msg import Parameter as ParameterMessage
@@ -200,10 +200,7 @@ class Waiting:
 
     def check_until(self, is_done):
         """Ask until something is done."""
-        deadline = time.monotonic() + SECONDS
-        while not is_done():
-            assert time.monotonic() < deadline, 'waited in vain'
-            self.check()
+        wait_until(is_done, self.check)
 
     def check(self):
         """Ask once."""

@@ -4,7 +4,7 @@
 
 import time
 
-from bridge_process import SECONDS
+from deadline import wait_until
 from geometry_msgs.msg import PoseStamped, TransformStamped
 import rclpy
 from rclpy.context import Context
@@ -59,10 +59,7 @@ class Listener:
 
     def wait(self, condition, what):
         """Handle messages until a condition is true."""
-        deadline = time.monotonic() + SECONDS
-        while not condition():
-            assert time.monotonic() < deadline, f'waited in vain for {what()}'
-            self.spin_once()
+        wait_until(condition, self.spin_once, what)
 
     def wait_for_keys(self, collection, keys):
         self.wait(

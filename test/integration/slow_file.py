@@ -6,9 +6,8 @@ import contextlib
 import fcntl
 import os
 import signal
-import time
 
-SECONDS = 30.0
+from deadline import wait_until
 
 
 class SlowFile:
@@ -35,10 +34,9 @@ class SlowFile:
     @contextlib.contextmanager
     def opened(self):
         """Wait until another process opens it, and let that wait until the end of the block."""
-        deadline = time.monotonic() + SECONDS
-        while fcntl.fcntl(self._descriptor, fcntl.F_GETLEASE) == fcntl.F_WRLCK:
-            assert time.monotonic() < deadline, f'nobody opens {self.path}'
-            time.sleep(0.001)
+        wait_until(
+            lambda: fcntl.fcntl(self._descriptor, fcntl.F_GETLEASE) != fcntl.F_WRLCK,
+            what=lambda: f'somebody to open {self.path}')
         yield self
         self._lease(fcntl.F_UNLCK)
         os.close(self._descriptor)

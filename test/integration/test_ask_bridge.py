@@ -6,6 +6,7 @@ from pathlib import Path
 import subprocess
 import sys
 
+from deadline import DEADLINE_S
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
@@ -22,7 +23,7 @@ def ask_running_bridge(start_shared_bridge):
     def ask(*arguments):
         return subprocess.run(
             [sys.executable, EXAMPLES / 'ask_bridge.py', *arguments], capture_output=True,
-            text=True, timeout=60, check=False)
+            text=True, timeout=DEADLINE_S, check=False)
 
     return ask
 

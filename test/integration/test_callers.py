@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from bridge_process import LoggedProcess, SECONDS
+from bridge_process import LoggedProcess
 from changes import (
     BRIDGE,
     listen_to_tf,
@@ -27,6 +27,7 @@ from changes import (
     Waiting,
     world,
 )
+from deadline import wait_until
 from listener import Answer
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import (
@@ -146,11 +147,8 @@ def test_a_client_that_waits_for_the_node_is_answered(start_bridge, start_listen
     listener = start_listener()
     client = listener.node.create_client(SetParameters, f'{BRIDGE}/set_parameters')
     start_bridge('--ros-args', '-p', f'sdf_file:={file}')
-    deadline = time.monotonic() + SECONDS
     # As rclcpp, which is told of each change; client.wait_for_service looks every 0.25 s.
-    while not client.service_is_ready():
-        assert time.monotonic() < deadline, 'waited in vain for the service'
-        time.sleep(0.001)
+    wait_until(client.service_is_ready, lambda: time.sleep(0.001))
     answer = Answer(client, SetParameters.Request(parameters=[
         Parameter(name='frame_prefix', value=value_of(string_value='r/'))]), may_be_lost=False)
     (result,) = listener.response(answer).results

@@ -15,7 +15,7 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from bridge_process import LoggedProcess, SECONDS, STARTED
+from bridge_process import LoggedProcess, STARTED
 from builtin_interfaces.msg import Time
 from changes import (
     asked_to_set,
@@ -30,6 +30,7 @@ from changes import (
     world,
 )
 from command_line import executable_of_workspace
+from deadline import DEADLINE_S
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import Point, Pose, PoseStamped
 from rosgraph_msgs.msg import Clock
@@ -360,7 +361,7 @@ def test_a_signal_to_all_processes_ends_them_well(ros_domain, tmp_path, number):
         descriptor = os.pidfd_open(busy_process(bridge))
         bridge.send(number)
         assert bridge.wait_for_end() == 0
-    assert select.select([descriptor], [], [], SECONDS)[0]
+    assert select.select([descriptor], [], [], DEADLINE_S)[0]
     os.close(descriptor)
     assert len(bridge.lines) == 1, bridge.lines
 
@@ -381,7 +382,7 @@ def test_a_full_disk_for_the_log_and_a_full_terminal_end_nothing(
         wait_for_x(listener, 2.0)
     finally:
         process.send_signal(signal.SIGINT)
-        assert process.wait(20.0) == 0
+        assert process.wait(DEADLINE_S) == 0
 
 
 @pytest.mark.usefixtures('bridge')

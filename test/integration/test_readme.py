@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 
+from deadline import DEADLINE_S
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
@@ -63,8 +64,8 @@ def listener_beside_it(bridge, start_shared_listener):
 
 def test_the_demonstration():
     done = subprocess.run(
-        [sys.executable, ROOT / 'examples/demo.py'], capture_output=True, text=True, timeout=60,
-        check=False)
+        [sys.executable, ROOT / 'examples/demo.py'], capture_output=True, text=True,
+        timeout=DEADLINE_S, check=False)
     assert done.returncode == 0, done.stderr
     first = (
         '49 transforms on /tf_static, 49 on /sdf_pose_bridge/transforms, '

@@ -7,12 +7,12 @@ import html
 import os
 import re
 import subprocess
-import time
 from types import SimpleNamespace
 from urllib.parse import urlsplit
 
-from browser import browser, DEADLINE_S
+from browser import browser
 from command_line import COMMAND, ENVIRONMENT
+from deadline import DEADLINE_S, wait_until
 import mesh_texts
 import numpy as np
 import pytest
@@ -388,9 +388,7 @@ def name_at(page, x, y):
 
 def wait_for_name_at(page, x, y, name):
     # Nothing says when the axes and bodies are drawn; until then there is no name.
-    end = time.monotonic() + DEADLINE_S
-    while name_at(page, x, y) != name:
-        assert time.monotonic() < end, f'this name was never shown: {name}'
+    wait_until(lambda: name_at(page, x, y) == name, lambda: None, lambda: name)
 
 
 def test_what_moves_is_drawn_and_named_before_it_is_written(sized_page, shown):

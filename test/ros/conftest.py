@@ -4,6 +4,7 @@
 
 from concurrent.futures import ThreadPoolExecutor
 
+from deadline import DEADLINE_S
 import pytest
 
 
@@ -37,7 +38,7 @@ def finish():
     """Runs a function or coroutine on an executor; ``finish(executor, function, *arguments)``."""
     def run(executor, function, *arguments):
         task = executor.create_task(function, *arguments)
-        executor.spin_until_future_complete(task, timeout_sec=20.0)
+        executor.spin_until_future_complete(task, timeout_sec=DEADLINE_S)
         assert task.done()
         return task.result()
     return run

@@ -5,13 +5,12 @@
 import math
 import threading
 
+from deadline import DEADLINE_S
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from sdf_pose_bridge.ros.background import Periodic, result_from_executor, Worker
-
-SECONDS = 20.0
 
 
 @pytest.fixture(name='worker')
@@ -25,7 +24,7 @@ def finished(node, callback):
     """Run a callback until it has ended, and return its result."""
     task = node.executor.create_task(callback)
     # A test fails if it waits in vain for something to wake the executor.
-    deadline = threading.Timer(SECONDS, node.executor.shutdown)
+    deadline = threading.Timer(DEADLINE_S, node.executor.shutdown)
     deadline.start()
     while not task.done():
         node.executor.spin_once()
@@ -48,7 +47,7 @@ def test_other_callbacks_run_while_a_thread_is_awaited(node, worker):
     goes_on = threading.Event()
 
     async def callback():
-        return await worker.run(lambda: goes_on.wait(SECONDS))
+        return await worker.run(lambda: goes_on.wait(DEADLINE_S))
 
     node.executor.create_task(goes_on.set)
     assert finished(node, callback)
@@ -60,7 +59,7 @@ def test_something_is_done_between_functions_and_again_after_a_time(worker):
     assert not calls.acquire(timeout=0.05), 'before the first function'
     worker.run(lambda: None)
     for _ in range(3):
-        assert calls.acquire(timeout=SECONDS)
+        assert calls.acquire(timeout=DEADLINE_S)
 
 
 def test_a_thread_ends_after_the_function_that_it_runs(node, worker):
@@ -70,7 +69,7 @@ def test_a_thread_ends_after_the_function_that_it_runs(node, worker):
     assert worker.is_alive
     node.executor.shutdown()
     goes_on.set()
-    worker._thread.join(SECONDS)
+    worker._thread.join(DEADLINE_S)
     assert not worker.is_alive
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import subprocess
 import sys
 
+from deadline import DEADLINE_S
 import pytest
 
 from sdf_pose_bridge.ros.bridge import LINK_COMMAND, sentence_from_import_error
@@ -20,8 +21,8 @@ def run_bridge_without(module):
         'from sdf_pose_bridge.ros.bridge import main\n'
         'sys.exit(main(["bridge"]))')
     return subprocess.run(
-        [sys.executable, '-c', program], cwd=ROOT, capture_output=True, text=True, timeout=30,
-        check=False)
+        [sys.executable, '-c', program], cwd=ROOT, capture_output=True, text=True,
+        timeout=DEADLINE_S, check=False)
 
 
 def test_without_the_interfaces_it_says_what_to_type():
@@ -81,6 +82,6 @@ def test_what_can_wait_for_the_first_message_is_not_imported_before():
         'imported = set(sys.modules) - imported_by_numpy\n'
         f'print([name for name in {WAITS_FOR_THE_FIRST_MESSAGE} if name in imported])')
     result = subprocess.run(
-        [sys.executable, '-c', program], cwd=ROOT, capture_output=True, text=True, timeout=30,
-        check=True)
+        [sys.executable, '-c', program], cwd=ROOT, capture_output=True, text=True,
+        timeout=DEADLINE_S, check=True)
     assert result.stdout.strip() == '[]'

@@ -5,6 +5,7 @@
 import subprocess
 import sys
 
+from deadline import DEADLINE_S
 import pytest
 
 PROGRAM = """
@@ -30,7 +31,7 @@ NO_MEMORY = 'sdf_pose_bridge: there is not enough memory, so the node ends\n'
 def ended(code, error, seconds=30):
     return subprocess.run(
         [sys.executable, '-c', PROGRAM.format(code=code, error=error, seconds=seconds)],
-        capture_output=True, text=True, check=False, timeout=20)
+        capture_output=True, text=True, check=False, timeout=DEADLINE_S)
 
 
 @pytest.mark.parametrize('code', [IN_THREAD, 'Fails()', 'end_without_memory()'])

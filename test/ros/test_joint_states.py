@@ -6,6 +6,7 @@ import math
 import threading
 import time
 
+from deadline import DEADLINE_S, wait_until
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
@@ -137,10 +138,8 @@ class Following:
 
     def wait(self, condition):
         """Run callbacks until a condition is true."""
-        deadline = time.monotonic() + 20.0
-        while not condition():
-            assert time.monotonic() < deadline, self.found
-            self._executor.spin_once(timeout_sec=0.01)
+        wait_until(
+            condition, lambda: self._executor.spin_once(timeout_sec=0.01), lambda: self.found)
 
     def spin(self, seconds):
         """Run callbacks for a time."""
@@ -306,7 +305,7 @@ def test_other_frames_continue_with_the_positions_and_one_nanosecond_later(arm):
 
 def test_a_look_up_sees_the_messages_that_came_before_it(arm):
     goes_on, seen = threading.Event(), []
-    arm.states._calls.append(lambda: goes_on.wait(20.0))
+    arm.states._calls.append(lambda: goes_on.wait(DEADLINE_S))
     arm.states._wake()
     arm.send(FIRST, {'turn': 0.5})
     arm.spin(0.2)
@@ -381,7 +380,7 @@ def test_it_ends_with_the_node(following):
     following.start()
     following.node.destroy_node()
     following.states._wake()
-    following.states._thread.join(20.0)
+    following.states._thread.join(DEADLINE_S)
     assert not following.states._thread.is_alive()
 
 

@@ -4,6 +4,7 @@
 
 import time
 
+from deadline import wait_until
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
@@ -55,11 +56,11 @@ class Looking:
             self.other.destroy_publisher(each)
 
     def look_until(self, condition, between=lambda: None):
-        deadline = time.monotonic() + 20.0
-        while not condition():
-            assert time.monotonic() < deadline, self.found.problems
+        def step():
             between()
             self.look()
+
+        wait_until(condition, step, lambda: self.found.problems)
 
     def look(self):
         self._beside(self._executor, self.found.look, self.frames)

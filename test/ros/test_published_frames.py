@@ -3,8 +3,8 @@
 """Frames published by a real node: which topics there are, and which publishers stay."""
 
 import threading
-import time
 
+from deadline import wait_until
 import numpy as np
 import pytest
 
@@ -172,11 +172,8 @@ def publish_topics(frames):
     frames.moving.publish_topics(only_listeners=False)
 
 
-def wait_until(node, condition, found):
-    deadline = time.monotonic() + 20.0
-    while not condition():
-        assert time.monotonic() < deadline, found
-        node.executor.spin_once(timeout_sec=0.1)
+def spin_until(node, condition, found):
+    wait_until(condition, lambda: node.executor.spin_once(timeout_sec=0.1), lambda: found)
 
 
 def test_moving_frames_are_not_published_with_the_fixed_ones(node, poses):
@@ -185,10 +182,10 @@ def test_moving_frames_are_not_published_with_the_fixed_ones(node, poses):
 
     frames = frames_of_arm(Publishers(node))
     publish_topics(frames)
-    wait_until(node, lambda: count('upper') and count('base'), poses)
+    spin_until(node, lambda: count('upper') and count('base'), poses)
     for _ in range(2):
         frames.publish_fixed_again()
-    wait_until(node, lambda: count('base') == 3, poses)
+    spin_until(node, lambda: count('base') == 3, poses)
     assert count('upper') == 1
 
 
@@ -199,7 +196,7 @@ def test_poses_have_the_stamps_of_the_tree_and_of_the_joints(node, poses):
     # The time of the node goes on before anything is published.
     assert frames.stamp_ns < publishers.now_ns()
     publish_topics(frames)
-    wait_until(node, lambda: {'upper', 'base'} <= dict(poses).keys(), poses)
+    spin_until(node, lambda: {'upper', 'base'} <= dict(poses).keys(), poses)
     stamps = {name: (stamp.sec, stamp.nanosec) for name, stamp in poses}
     assert stamps == {'base': divmod(frames.stamp_ns, 10**9), 'upper': (5, 6)}
 
@@ -208,7 +205,7 @@ def test_poses_in_a_frame_that_moves_have_the_stamp_of_its_joints(node, poses):
     frames = frames_of_arm(Publishers(node), pose_frame='upper')
     report_position(frames, 5_000_000_006)
     publish_topics(frames)
-    wait_until(node, lambda: 'base' in dict(poses), poses)
+    spin_until(node, lambda: 'base' in dict(poses), poses)
     stamp = dict(poses)['base']
     assert (stamp.sec, stamp.nanosec) == (5, 6)
 
@@ -219,9 +216,9 @@ def test_what_waits_for_tf_keeps_its_stamp_while_topics_are_published(node, pose
     node.create_subscription(TFMessage, '/tf', found.append, 10)
     rows = frames.moving.stamp(np.array([0]), 7_000_000_008)
     publish_topics(frames)
-    wait_until(node, lambda: 'upper' in dict(poses), poses)
+    spin_until(node, lambda: 'upper' in dict(poses), poses)
     frames.moving.publish_tf(rows)
-    wait_until(node, lambda: found, found)
+    spin_until(node, lambda: found, found)
     stamp = found[0].transforms[0].header.stamp
     assert (stamp.sec, stamp.nanosec) == (7, 8)
 
@@ -231,11 +228,11 @@ def test_what_a_joint_without_a_position_moves_is_not_published(node, poses):
     node.create_subscription(TransformStamped, '/bridge/transforms', transforms.append, LATCHED)
     before = frames_of_arm(publishers, unreported=UnreportedJoints.NONE)
     publish_topics(before)
-    wait_until(node, lambda: 'base' in dict(poses), poses)
+    spin_until(node, lambda: 'base' in dict(poses), poses)
     assert 'upper' not in dict(poses)
     report_position(before, 5_000_000_006)
     before.moving.publish_topics(only_listeners=False)
-    wait_until(
+    spin_until(
         node, lambda: 'upper' in dict(poses)
         and 'upper' in [each.child_frame_id for each in transforms], poses)
     assert [each.child_frame_id for each in transforms].count('upper') == 1

@@ -5,12 +5,12 @@
 import array
 import math
 import threading
-import time
 
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
+from deadline import DEADLINE_S, wait_until
 from geometry_msgs.msg import PoseStamped
 import numpy as np
 from rclpy.clock import Clock
@@ -185,7 +185,7 @@ def make_path(tmp_path):
 def test_large_requests_wait_in_the_middleware_until_it_is_their_turn(
         make_node, make_executor, monkeypatch):
     goes_on, taken = threading.Event(), []
-    monkeypatch.setattr(services, 'answer_to_convert_poses', lambda *_: goes_on.wait(20.0))
+    monkeypatch.setattr(services, 'answer_to_convert_poses', lambda *_: goes_on.wait(DEADLINE_S))
     node, caller = make_node('bridge'), make_node('caller')
     executor = make_executor(node, caller)
     services.add_services(node, None)
@@ -198,19 +198,22 @@ def test_large_requests_wait_in_the_middleware_until_it_is_their_turn(
 
     service.callback = counted
     client = caller.create_client(ConvertPoses, '/bridge/convert_poses')
-    assert client.wait_for_service(20.0)
+    other_client = caller.create_client(ConvertRotation, '/bridge/convert_rotation')
+
+    def spin_until(condition):
+        wait_until(condition, lambda: executor.spin_once(timeout_sec=0.01))
+
+    spin_until(lambda: client.service_is_ready() and other_client.service_is_ready())
     request = ConvertPoses.Request(values=array.array('d', bytes(8 * services.FEW_NUMBERS + 8)))
     futures = [client.call_async(request) for _ in range(3)]
 
-    def spin_until(condition, seconds):
-        deadline = time.monotonic() + seconds
-        while not condition() and time.monotonic() < deadline:
-            executor.spin_once(timeout_sec=0.01)
-
-    spin_until(lambda: len(taken) > 1, 0.5)
+    spin_until(lambda: taken)
+    for _ in range(3):
+        later = other_client.call_async(ConvertRotation.Request())
+        spin_until(later.done)
     assert len(taken) == 1
     goes_on.set()
-    spin_until(lambda: all(future.done() for future in futures), 20.0)
+    spin_until(lambda: all(future.done() for future in futures))
     assert all(future.result().success for future in futures)
 
 

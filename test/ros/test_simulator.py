@@ -5,6 +5,7 @@
 import sys
 import time
 
+from deadline import wait_until
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
@@ -27,10 +28,7 @@ def make_simulator(node):
 
 
 def spin_until(node, condition):
-    deadline = time.monotonic() + 20.0
-    while not condition():
-        assert time.monotonic() < deadline
-        node.executor.spin_once(timeout_sec=0.01)
+    wait_until(condition, lambda: node.executor.spin_once(timeout_sec=0.01))
 
 
 def test_without_the_package_a_line_says_what_to_install(node, monkeypatch, capfd):

@@ -3,8 +3,8 @@
 """What poses of models change, and the ones that are ignored."""
 
 import re
-import time
 
+from deadline import wait_until
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
@@ -178,10 +178,7 @@ def make_look(models, make_node):
     publishers = [other.create_publisher(PoseStamped, '/poses', 10) for _ in range(2)]
     sources = {'poses': models.source, 'alone': StateSource(models.source._node, '/alone')}
     publishers.append(other.create_publisher(PoseStamped, '/alone', 10))
-    deadline = time.monotonic() + 20.0
-    while [len(each.publishers()) for each in sources.values()] != [2, 1]:
-        assert time.monotonic() < deadline
-        time.sleep(0.01)
+    wait_until(lambda: [len(each.publishers()) for each in sources.values()] == [2, 1])
 
     def look(*periods):
         for period in periods:

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The topics that a node subscribes to, and when."""
 
-import time
 
+from deadline import wait_until
 from geometry_msgs.msg import PointStamped, PoseStamped
 import pytest
 
@@ -42,11 +42,12 @@ class Sources:
     def wait_for(self, **types):
         """Search until these are the types of the topics of poses."""
         expected = {'/joint_states': 'JointState', **{f'/{k}/pose': v for k, v in types.items()}}
-        deadline = time.monotonic() + 20.0
-        while self.types() != expected:
-            assert time.monotonic() < deadline, self.types()
+
+        def search():
             self.sources._find_publishers()
             self._node.executor.spin_once(timeout_sec=0.01)
+
+        wait_until(lambda: self.types() == expected, search, self.types)
 
 
 @pytest.fixture(name='sources')
@@ -97,10 +98,7 @@ def test_other_types_and_several_are_reported_once(
     third = rclpy.create_node('third', context=other_context)
     for each in types[1:]:
         third.create_publisher(each, '/a/pose', 10)
-    deadline = time.monotonic() + 20.0
-    while node.count_publishers('/a/pose') < len(types):
-        assert time.monotonic() < deadline
-        time.sleep(0.01)
+    wait_until(lambda: node.count_publishers('/a/pose') == len(types))
     sources.publish(PoseStamped, 'b/pose')
     sources.wait_for(b='PoseStamped')
     sources.sources._find_publishers()

@@ -3,8 +3,8 @@
 """When ``~/visuals`` is made and published."""
 
 import math
-import time
 
+from deadline import wait_until
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
@@ -40,17 +40,14 @@ def test_shapes_of_the_scene_before_are_no_longer_read_and_not_shown(
 
     subscription = listen()
 
-    def wait_until(condition):
-        deadline = time.monotonic() + 20.0
-        while not condition():
-            assert time.monotonic() < deadline
-            executor.spin_once(timeout_sec=0.01)
+    def spin_until(condition):
+        wait_until(condition, lambda: executor.spin_once(timeout_sec=0.01))
 
-    wait_until(lambda: visuals.go_on() < math.inf)
+    spin_until(lambda: visuals.go_on() < math.inf)
     listener.destroy_subscription(subscription)
-    wait_until(lambda: not node.count_subscribers('/bridge/visuals'))
+    spin_until(lambda: not node.count_subscribers('/bridge/visuals'))
     visuals.replace(new)
     assert visuals.go_on() == math.inf, 'nobody listens'
     listen()
-    wait_until(lambda: visuals.go_on() == math.inf and found)
+    spin_until(lambda: visuals.go_on() == math.inf and found)
     assert [each.markers[1].type for each in found] == [Marker.SPHERE]

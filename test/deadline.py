@@ -1,0 +1,20 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The deadline of all tests that wait for an event."""
+
+import time
+
+DEADLINE_S = 120.0
+"""Longest wait for an event; a test that passes waits for a small part of it on any machine."""
+
+
+def wait_until(is_true, step=lambda: time.sleep(0.01), what=lambda: 'it'):
+    """
+    Repeat a step until a condition is true.
+
+    :param what: returns what did not happen, for the message of the failure.
+    """
+    ends_at = time.monotonic() + DEADLINE_S
+    while not is_true():
+        assert time.monotonic() < ends_at, f'waited in vain for {what()}'
+        step()
