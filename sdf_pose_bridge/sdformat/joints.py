@@ -178,6 +178,8 @@ def _axis(
         limits = first_children(limit)
         (lower,) = numbers_of(limits.get('lower'), (lower,))
         (upper,) = numbers_of(limits.get('upper'), (upper,))
+        if lower > upper:
+            sources.warning(limit, f'the lower limit {lower:g} is above the upper one, {upper:g}')
         if any(map(_may_be_degrees, (lower, upper))) and _has_dof(
                 attribute_of(joint, 'type').lower(), Motion.TURN):
             msg = (f'the limits {lower:g} to {upper:g} of joint "{attribute_of(joint, "name")}" '

@@ -231,6 +231,13 @@ def number_from_word(word: str) -> Sequence[float]:
     return (number,) if is_representable(match[0], number) else ()
 
 
+def number_from_stream(word: str) -> Sequence[float]:
+    """Return the number that a C++ stream reads, if it reads all of a text; else none."""
+    match = _STREAM_NUMBER.fullmatch(word)
+    number = math.inf if match is None else float(match[1])
+    return (number,) if math.isfinite(number) else ()
+
+
 def _integer(text: str, value_type: ValueType) -> Sequence[float]:
     """Read an integer as ``std::stoi`` and ``std::stoul`` do."""
     match = _C_INTEGER.match(text)

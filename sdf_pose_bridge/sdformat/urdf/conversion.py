@@ -103,6 +103,7 @@ class _Conversion:
         self._extensions = dict(robot.extensions)
         self._bases = bases_of_links(robot)
         self._inertials = lumped_inertials(robot, self._bases, skips_massless=for_ros)
+        self._leave_out_content_of_lumped_joints()
         self._left_out = self._links_left_out()
         if for_ros:
             # Links are lumped only to find the warnings about Gazebo.
@@ -145,6 +146,19 @@ class _Conversion:
                 xml, f'<{written_tag(xml)}> is for Gazebo alone, as ROS has only the tree of the '
                 'robot', is_for_gazebo=True)
         self._extensions[''] = kept
+
+    def _leave_out_content_of_lumped_joints(self) -> None:
+        """Leave out what ``<gazebo>`` has for joints that Gazebo removes, or warn of it."""
+        joints = {self._robot.parent_joints[link.name].name
+                  for link in self._robot.links if self._is_lumped(link)}
+        for name in joints.intersection(self._extensions) - self._bases.keys():
+            child = self._extensions[name][0]
+            if not self._for_ros:
+                del self._extensions[name]
+            self._sources.warning(child, (
+                f'Gazebo leaves out <{written_tag(child)}>, as it removes the fixed joint '
+                f'"{name}"; <preserveFixedJoint>true</preserveFixedJoint> in this <gazebo> '
+                'keeps the joint'), is_for_gazebo=self._for_ros)
 
     def _is_lumped(self, link: RobotLink) -> bool:
         return self._bases[link.name].link is not link
@@ -271,9 +285,13 @@ class _Conversion:
         xyz = values.get('axis', {'xyz': [0.0, 0.0, 1.0] if is_fixed else [1.0, 0.0, 0.0]}).get(
             'xyz', [0.0, 0.0, 0.0])
         limit = dict(values.get('limit', {}))
-        ends = sorted((*limit.pop('lower', [0.0]), *limit.pop('upper', [0.0])))
+        lower, upper = *limit.pop('lower', [0.0]), *limit.pop('upper', [0.0])
         if is_fixed or URDF_JOINT_TYPES[joint.type].has_limit:
-            limit.update(lower=ends[:1], upper=ends[1:])
+            if lower > upper and not self._for_ros:
+                msg = f'Gazebo swaps the lower and the upper limit of joint "{joint.name}"'
+                self._sources.warning(joint.xml, msg)
+                lower, upper = upper, lower
+            limit.update(lower=[lower], upper=[upper])
         axis = self._add(xml, 'axis', joint.xml)
         self._add(axis, 'xyz', joint.xml, text_from_numbers(xyz))
         self._add(axis, 'limit', joint.xml, numbers=limit)

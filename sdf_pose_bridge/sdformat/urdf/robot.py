@@ -5,13 +5,14 @@ Read the robot of a URDF file: links, joints and the content of ``<gazebo>`` ele
 
 Values that poses do not need are not read.
 
-Files are accepted as by urdfdom, the parser of libsdformat: a joint with a fault is an
+Files are accepted as by urdfdom, the parser of ROS and libsdformat: a joint with a fault is an
 error, but in a link the parser stops at the fault and keeps the part that it has read.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+import math
 from typing import NamedTuple
 
 from sdf_pose_bridge.errors import DuplicateNameError, ElementInvalidError, ParsingError
@@ -25,11 +26,12 @@ from sdf_pose_bridge.sdformat.specification import URDF_JOINT_TYPES
 from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
 from sdf_pose_bridge.sdformat.urdf.values import (
     is_true,
-    NotFiniteError,
     Numbers,
     numbers_of,
     pose_from_xyz_rpy,
+    text_from_numbers,
 )
+from sdf_pose_bridge.sdformat.values import number_from_word
 from sdf_pose_bridge.sdformat.xml_tree import child_elements, first_child, written_tag, XmlElement
 
 _SHAPES = ('box', 'cylinder', 'mesh', 'sphere')
@@ -121,7 +123,7 @@ def robot_from_tree(root: XmlElement, sources: Sources, *, is_included: bool) ->
         errors.error(ParsingError, root, 'the robot has no name')
     _named_children(root, 'material', errors)
     links = {
-        name: _link(name, xml, sources, errors)
+        name: _link(name, xml, sources)
         for name, xml in _named_children(root, 'link', errors).items()}
     if not links:
         errors.error(ParsingError, root, 'the robot has no <link>')
@@ -203,20 +205,27 @@ def _named_children(root: XmlElement, tag: str, errors: Sources) -> Mapping[str,
 
 
 def _robot_origin(root: XmlElement, sources: Sources, errors: Sources) -> Pose:
+    """Return the pose of the robot, which urdfdom does not read."""
     numbers: dict[str, list[float]] = {}
     origin = first_child(root, 'origin')
-    if origin is not None:
-        for rule in _rules('urdf_origin'):
-            try:
-                numbers.update(numbers_of(origin, [rule]))
-            except NotFiniteError as error:
-                errors.error(ElementInvalidError, origin, str(error))
-            except ValueError as error:
-                sources.warning(origin, f'{error}; libsdformat takes zeros for it')
+    if origin is None:
+        return Pose()
+    for rule in _rules('urdf_origin'):
+        try:
+            numbers.update(numbers_of(origin, [rule]))
+        except ValueError as error:
+            words = [*filter(None, origin.get(rule.name, '').split(' '))]
+            read = [number for word in words for number in number_from_word(word)]
+            numbers[rule.name] = read = read if len(read) == len(words) == 3 else [0.0] * 3
+            msg = f'{error}; Gazebo reads it as {text_from_numbers(read)}'
+            if all(map(math.isfinite, read)):
+                sources.warning(origin, msg)
+            else:
+                errors.error(ElementInvalidError, origin, msg)
     return _pose_of_origin(origin, numbers, sources)
 
 
-def _link(name: str, xml: XmlElement, sources: Sources, errors: Sources) -> RobotLink:
+def _link(name: str, xml: XmlElement, sources: Sources) -> RobotLink:
     inertial = None
     shapes: list[RobotShape] = []
     try:
@@ -231,10 +240,8 @@ def _link(name: str, xml: XmlElement, sources: Sources, errors: Sources) -> Robo
             inertial = inertial._replace(moments=tuple(inertia[name][0] for name in MOMENTS))
         for shape in (*child_elements(xml, 'visual'), *child_elements(xml, 'collision')):
             shapes.append(_shape(shape, sources))  # noqa: PERF401  # those before a fault are kept
-    except NotFiniteError as error:
-        errors.error(ElementInvalidError, xml, str(error))
     except ValueError as error:
-        sources.warning(xml, f'link "{name}": {error}; libsdformat reads it no further')
+        sources.warning(xml, f'link "{name}": {error}; ROS and Gazebo read it no further')
     return RobotLink(xml, name, inertial, shapes)
 
 
@@ -258,23 +265,21 @@ def _joint(
     elif joint_type.has_limit and first_child(xml, 'limit') is None:
         errors.error(ParsingError, xml, f'the {type_name} joint has no <limit>')
     values: dict[str, Numbers] = {}
-    try:
-        for each, definition in definition_of('urdf_joint').children.items():
-            tag = str(each)
-            part = first_child(xml, tag)
-            if part is None or (
-                    tag == 'axis' and joint_type is not None and not joint_type.has_axis):
-                continue
+    for each, definition in definition_of('urdf_joint').children.items():
+        tag = str(each)
+        part = first_child(xml, tag)
+        if part is None or (
+                tag == 'axis' and joint_type is not None and not joint_type.has_axis):
+            continue
+        try:
             values[tag] = numbers_of(part, definition.attributes.values())
-            if tag == 'dynamics' and not values[tag]:
-                errors.error(
-                    ParsingError, part, 'the <dynamics> has neither damping nor friction')
-        origin = _pose_of_origin(first_child(xml, 'origin'), values.get('origin', {}), sources)
-        return RobotJoint(xml, name, type_name, origin, ends[0], ends[1], values)
-    except ValueError as error:
-        error_class = ElementInvalidError if isinstance(error, NotFiniteError) else ParsingError
-        errors.error(error_class, xml, str(error))
-        return None
+        except ValueError as error:
+            errors.error(ParsingError, part, str(error))
+            return None
+        if tag == 'dynamics' and not values[tag]:
+            errors.error(ParsingError, part, 'the <dynamics> has neither damping nor friction')
+    origin = _pose_of_origin(first_child(xml, 'origin'), values.get('origin', {}), sources)
+    return RobotJoint(xml, name, type_name, origin, ends[0], ends[1], values)
 
 
 def _rules(identifier: str) -> Iterable[Item]:

@@ -10,8 +10,9 @@ from typing import TypeAlias
 
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
+from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.sdformat.grammar import Item
-from sdf_pose_bridge.sdformat.values import number_from_word
+from sdf_pose_bridge.sdformat.values import number_from_stream
 from sdf_pose_bridge.sdformat.xml_tree import text_of, WHITE_SPACE, written_tag, XmlElement
 
 _URDFDOM_GIMBAL_LOCK = 1e-5
@@ -23,27 +24,25 @@ Numbers: TypeAlias = Mapping[str, Sequence[float]]
 """Numbers by the names of attributes in URDF, or of child elements in SDFormat."""
 
 
-class NotFiniteError(ValueError):
-    """Numbers that URDF may have, but SDFormat may not."""
-
-
 def is_true(xml: XmlElement) -> bool:
     """
     Return whether an option in a ``<gazebo>`` element is ``true``, ``yes`` or ``1`` in any case.
 
-    :param xml: the option; its value is its attribute ``value`` or its text.
+    :param xml: the option; its value is its attribute ``value`` or its text, unless a comment
+        comes first.
     """
-    value = xml.get('value', text_of(xml))
+    # CDATA has an empty comment before it.
+    is_hidden = not (xml.text or '').strip(WHITE_SPACE) and len(xml) and xml[0].text
+    value = xml.get('value', '' if is_hidden else text_of(xml))
     return value.strip(WHITE_SPACE).lower() in ('true', 'yes', '1')
 
 
 def numbers_of(xml: XmlElement, rules: Iterable[Item]) -> dict[str, list[float]]:
     """
-    Read the attributes of an element that are numbers.
+    Read the attributes of an element that are numbers, as urdfdom does (``strToDouble``).
 
     :param rules: the rules of the grammar for attributes; those of other types are only required.
     :return: the numbers of those that it has.
-    :raises NotFiniteError: if one of three numbers is not finite.
     :raises ValueError: if one is missing or is not numbers.
     """
     tag = written_tag(xml)
@@ -55,16 +54,14 @@ def numbers_of(xml: XmlElement, rules: Iterable[Item]) -> dict[str, list[float]]
                 msg = f'<{tag}> has no {name}'
                 raise ValueError(msg)
         elif count:
-            # Text behind a single number is ignored.
-            words = [text.lstrip(WHITE_SPACE)] if count == 1 else text.split()
-            numbers = [number for word in words for number in number_from_word(word)]
-            msg = f'{name} of <{tag}> is "{text[:80]}"'
+            # Only blanks separate numbers, and nothing may follow a single one.
+            words = [text] if count == 1 else [*filter(None, text.split(' '))]
+            numbers = [number for word in words for number in number_from_stream(word)]
             if not len(numbers) == len(words) == count:
-                msg += f', which is not {rule.value_type.description}'
+                msg = (f'{name} of <{tag}> is "{shortened(text)}"; it must be '
+                       f'{rule.value_type.description} such as 1.5 or -2e-3, '
+                       f'{"with nothing behind it" if count == 1 else "separated by blanks"}')
                 raise ValueError(msg)
-            if count > 1 and not all(map(math.isfinite, numbers)):
-                msg += '; the numbers must be finite'
-                raise NotFiniteError(msg)
             result[name] = numbers
     return result
 

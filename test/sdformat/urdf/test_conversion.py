@@ -13,6 +13,7 @@ from sdf_texts import errors_of_file, names_of, only_error, world_file
 from urdf_texts import gazebo, joint, link, origin, robot, shape
 
 from sdf_pose_bridge import load, load_text
+from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.urdf.conversion import sdf_from_urdf
@@ -95,6 +96,18 @@ def test_axis_limits_and_mimic_are_converted():
     assert texts == {'xyz': '0 1 0', 'lower': '-1', 'upper': '2', 'effort': '3', 'velocity': '4',
                      'multiplier': '5', 'offset': '0'}
     assert axis.find('mimic').get('joint') == 'k'
+
+
+def test_swapped_limits_are_as_written_for_ros_and_in_order_in_an_include(tmp_path):
+    swapped = '<limit lower="2" upper="-1" effort="3" velocity="4"/>'
+    text = TWO + joint('j', 'a', 'b', 'revolute', swapped)
+    for scene, limits, told in (
+            (load_text(robot(text)), (2.0, -1.0), 'the lower limit 2 is above the upper one, -1'),
+            (load(write(tmp_path, text)), (-1.0, 2.0), 'Gazebo swaps the lower and the upper')):
+        axis = scene.joints[0].axes[0]
+        assert (axis.lower, axis.upper) == limits
+        (warning,) = scene.warnings
+        assert warning.message.startswith(told)
 
 
 def test_preserved_fixed_joint_can_be_mimicked(tmp_path):
@@ -233,6 +246,18 @@ def test_mesh_of_a_package_stays_one(is_included):
     assert model.find('link/visual/geometry/mesh/uri').text == 'package://p/a.dae'
 
 
+def test_poses_of_two_fixed_joints_in_a_row_are_multiplied_from_the_first(tmp_path):
+    text = (TWO + link('c', shape('visual')) + FIXED
+            + joint('k', 'b', 'c', 'fixed', origin('0 2 0', '0.5 0 0'))
+            + link('d') + joint('l', 'c', 'd', 'continuous', origin('0 0 3')))
+    included, alone = load(write(tmp_path, text)), load_text(robot(text))
+    expected = (-1.0, 0.0, 0.0, *quaternion_from_rpy((0.5, 0.0, math.pi / 2)))
+    for name in ('a::a_fixed_joint_lump__c_visual', 'c'):
+        assert included.pose(f'n::{name}', 'n') == pytest.approx(expected), name
+    assert alone.pose('r::c', 'r') == pytest.approx(expected)
+    assert included.pose('n::d', 'n') == pytest.approx(alone.pose('r::d', 'r'))
+
+
 def test_joint_below_a_lumped_link_starts_at_the_link_it_is_lumped_into():
     text = robot(TWO + link('c') + FIXED + joint('k', 'b', 'c', 'continuous', origin('1 0 0')))
     assert model_from(text).find('joint/parent').text == 'a'
@@ -323,15 +348,27 @@ def test_sensor_of_a_joint():
     assert 'r::j::s' in scene.names
 
 
-@pytest.mark.parametrize('reference', ['j', 'c'])
-def test_what_belongs_to_nothing_is_left_out_with_a_warning(tmp_path, reference):
+@pytest.mark.parametrize(('reference', 'reason'), [
+    ('j', 'it removes the fixed joint "j"; <preserveFixedJoint>true</preserveFixedJoint>'),
+    ('c', 'no link or joint of that name')])
+def test_what_belongs_to_nothing_is_left_out_with_a_warning(tmp_path, reference, reason):
     text = TWO + FIXED + gazebo(SENSOR.format(''), reference)
     scene = load(write(tmp_path, text))
     assert not any(name.endswith('::s') for name in scene.names)
-    assert f'reference="{reference}"' in scene.warnings[0].message
-    assert not scene.warnings[0].is_for_gazebo
-    if reference == 'c':
-        assert load_text(robot(text)).warnings[0].is_for_gazebo
+    alone = load_text(robot(text))
+    assert ('r::j::s' in alone.names) == (reference == 'j')
+    for each, is_for_gazebo in ((scene, False), (alone, True)):
+        (warning,) = each.warnings
+        assert reason in warning.message
+        assert warning.is_for_gazebo == is_for_gazebo
+
+
+@pytest.mark.parametrize('text', [
+    FIXED.replace('"j"', '"b"') + gazebo(SENSOR.format(''), 'b'),
+    FIXED + gazebo('<preserveFixedJoint>1</preserveFixedJoint>' + SENSOR.format(''), 'j'),
+])
+def test_sensor_that_gazebo_keeps_causes_no_warning_about_its_joint(text):
+    assert not any('removes' in each.message for each in load_text(robot(TWO + text)).warnings)
 
 
 BALL = '<joint name="k" type="ball"><parent>world</parent><child>b</child></joint>'
@@ -357,7 +394,7 @@ def test_gazebo_elements_change_no_tree_for_ros(content):
     (origin('1 0 0'), 1.0),
     (gazebo('<pose>2 0 0 0 0 0</pose>'), 2.0),
     (origin('1 0 0') + gazebo('<pose>2 0 0 0 0 0</pose>'), 1.0),
-    (origin('x 0 0'), 0.0),
+    (origin('x 0 0'), 0.0), (origin('2m 0 0'), 2.0),
 ])
 def test_pose_of_the_robot(content, x):
     assert load_text(robot(link('a') + content)).pose('r').x == x

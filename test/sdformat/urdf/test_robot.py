@@ -35,19 +35,18 @@ REFUSED = {'PARSING_ERROR': [
     (robot(TWO + joint('j', 'a', 'b', 'prismatic', '<limit effort="1"/>')),
      '<limit> has no velocity'),
     (robot(TWO + joint('j', 'a', 'b', 'continuous', '<limit effort="x" velocity="1"/>')),
-     'effort of <limit> is "x", which is not a number'),
+     'effort of <limit> is "x"; it must be a number such as'),
     (robot(TWO + joint('j', 'a', 'b', 'continuous', '<axis xyz="1 0"/>')),
-     'xyz of <axis> is "1 0", which is not three numbers'),
+     'xyz of <axis> is "1 0"; it must be three numbers such as'),
+    (robot(TWO + joint('j', 'a', 'b', 'fixed', NOT_FINITE)),
+     'xyz of <origin> is "0 0 inf"; it must be three numbers such as'),
     (robot(TWO + joint('j', 'a', 'b', 'continuous', '<mimic/>')), '<mimic> has no joint'),
     (robot(TWO + joint('j', 'a', 'b', 'continuous', '<dynamics/>')), 'neither damping nor'),
     (robot(TWO + joint('j', 'a', 'b', 'continuous', '<safety_controller/>')),
      '<safety_controller> has no k_velocity'),
-], 'ELEMENT_INVALID': [(text, 'the numbers must be finite') for text in (
-    robot(TWO + joint('j', 'a', 'b', 'fixed', NOT_FINITE)),
-    robot(link('a', shape('visual', NOT_FINITE))),
-    robot(link('a', '<visual><geometry><box size="nan 1 1"/></geometry></visual>')),
-    robot(NOT_FINITE + link('a')),
-)], 'DUPLICATE_NAME': [
+], 'ELEMENT_INVALID': [
+    (robot(NOT_FINITE + link('a')), 'Gazebo reads it as 0 0 inf'),
+], 'DUPLICATE_NAME': [
     (robot(TWO + joint('j', 'a', 'b') + joint('k', 'a', 'b')),
      '"b" is already the child of joint "j"'),
 ]}
@@ -64,6 +63,8 @@ def test_broken_robot_is_refused(code, text, message):
 def test_error_names_line_and_element():
     error = only_error(robot(TWO + '\n' + joint('j', 'a', 'b', 'hinge')))
     assert (error.line, error.element) == (2, '/robot[@name="r"]/joint[@name="j"]')
+    error = only_error(robot(TWO + joint('j', 'a', 'b', content='\n' + NOT_FINITE)))
+    assert (error.line, error.element) == (2, '/robot[@name="r"]/joint[@name="j"]/origin')
 
 
 def test_all_errors_are_reported():
@@ -84,13 +85,14 @@ def test_number_of_errors_is_bounded():
     '<visual><geometry><sphere/></geometry></visual>',
     '<visual><geometry><mesh/></geometry></visual>',
     '<visual><origin rpy="0"/><geometry><sphere radius="1"/></geometry></visual>',
+    '<visual><geometry><box size="nan 1 1"/></geometry></visual>',
     '<visual><geometry><sphere radius="1"/></geometry><material/></visual>',
 ])
 def test_link_is_read_up_to_a_fault(broken):
     sphere = '<visual><geometry><sphere radius="1"/></geometry></visual>'
     scene = load_text(robot(link('a', sphere + broken + sphere)))
     assert [name for name in scene.names if 'visual' in name] == ['r::a::a_visual']
-    assert 'libsdformat reads it no further' in scene.warnings[0].message
+    assert 'ROS and Gazebo read it no further' in scene.warnings[0].message
 
 
 def test_mass_counts_though_the_moments_are_missing():
