@@ -9,7 +9,8 @@ that may share a name with elements of other kinds have the kind before their ow
 
 Gazebo stamps a sensor's messages with the frame id that the file sets (``frame_id``, before
 version 1.12 ``gz_frame_id``), or with one made of the sensor's name. A camera's optical frame is
-named by ``optical_frame_id``, or like the camera with ``_optical`` appended.
+named by ``optical_frame_id``, or like the camera with ``_optical`` appended. Where the frame id of
+a camera is that of a link in the place of the optical frame, it names this frame.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sdf_pose_bridge.geometry.chains import ends_from_pointers, Indices
+from sdf_pose_bridge.geometry.poses import distance_and_angle, OPTICAL_POSE, Pose, pose_product
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
@@ -28,6 +30,9 @@ from sdf_pose_bridge.sdformat.grammar import Kind
 _LABELLED_KINDS = [
     kind for kind in Kind if kind.has_name and not kind.is_frame and kind is not Kind.SENSOR]
 """The kinds with name spaces of their own. Gazebo's frame ids of sensors have no kind."""
+
+_SAME_PLACE_M, _SAME_PLACE_RAD = 1e-3, 2e-3
+"""The data of a sensor may be that far from their frame, as files round right angles."""
 
 
 class FrameNames(enum.Enum):
@@ -54,6 +59,10 @@ class FrameNaming(NamedTuple):
         """Make a frame id of a name as in SDF; an empty one if it consists of slashes only."""
         rest = name.replace(SEPARATOR, self.separator).lstrip('/')
         return self.prefix + rest if rest else ''
+
+    def name_from_frame_id(self, frame_id: str) -> str:
+        """Return the name of a frame id in the file, which may begin with the prefix already."""
+        return frame_id.removeprefix(self.prefix)
 
     def names_from_scene(self, scene: Scene, elements: Indices) -> list[str]:
         """
@@ -87,29 +96,46 @@ class FrameNaming(NamedTuple):
 
 def frame_ids_with_sensors(
     names: Mapping[int, str], scene: Scene, naming: FrameNaming, root_frame: str,
-) -> tuple[dict[int, str], dict[int, str]]:
+) -> tuple[dict[int, str], dict[int, str], dict[int, str]]:
     """
     Make frame ids, and use those that the file sets for sensors.
+
+    A camera's may have a name before that of the link at its optical frame, such as
+    ``robot/eye`` for ``eye``.
 
     :param names: the name of each published element, as :meth:`FrameNaming.names_from_scene`
         makes it.
     :return: the frame ids without those of sensors whose id belongs to another kind of element, or
-        of a sensor in the same place; and the name of the frame of each published sensor.
+        of a sensor in the same place; the name of the frame of each published sensor; and those
+        that mean the optical frame of a camera, whose own name then is that of the link there.
     """
     frame_ids = {each: naming.frame_id_from_name(name) for each, name in names.items()}
     sensor_names = {each: names[each] for each in names if each in scene.sensors}
-    other_ids = {root_frame, *(
-        frame_id for element, frame_id in frame_ids.items() if element not in sensor_names)}
+    others = {
+        frame_id: element for element, frame_id in frame_ids.items()
+        if element not in sensor_names}
     first_sensors: dict[str, int] = {}
+    optical_names: dict[int, str] = {}
     for sensor in sensor_names:
-        if name := scene.sensors[sensor].frame_id:
+        if name := naming.name_from_frame_id(scene.sensors[sensor].frame_id):
             sensor_names[sensor] = name
             frame_ids[sensor] = frame_id = naming.frame_id_from_name(name)
             first = first_sensors.get(frame_id)
-            if frame_id in other_ids or (
+            other = others.get(
+                frame_id, others.get(naming.frame_id_from_name(name.partition('/')[2])))
+            if other is not None and scene.sensors[sensor].is_camera and misplacement(
+                    pose_product(scene.pose_of(sensor), OPTICAL_POSE), scene.pose_of(other)) <= 1:
+                sensor_names[sensor], optical_names[sensor] = names[other], name
+            if sensor in optical_names or frame_id == root_frame or frame_id in others or (
                     first is not None and scene.parents[first] == scene.parents[sensor]
                     and scene.pose_of(first) == scene.pose_of(sensor)):
                 del frame_ids[sensor]
                 continue
         first_sensors.setdefault(frame_ids[sensor], sensor)
-    return frame_ids, sensor_names
+    return frame_ids, sensor_names, optical_names
+
+
+def misplacement(pose: Pose, other: Pose) -> float:
+    """Return the distance or the angle of two poses; more than 1 is too far for a sensor."""
+    distance_m, angle_rad = distance_and_angle(pose, other)
+    return max(distance_m / _SAME_PLACE_M, angle_rad / _SAME_PLACE_RAD)

@@ -10,6 +10,7 @@ SDFormat does not have. In URDF a joint is where its child link is, and has one 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
 import math
 from typing import NamedTuple
 
@@ -28,7 +29,7 @@ from sdf_pose_bridge.geometry.poses import (
 )
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.tf.frame_ids import FrameNaming
+from sdf_pose_bridge.tf.frame_ids import FrameNaming, misplacement
 from sdf_pose_bridge.tf.joint_motion import JointMotion
 from sdf_pose_bridge.tf.joint_positions import SLIDE_SUFFIX
 from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT, TfParents
@@ -41,9 +42,6 @@ LINK_SUFFIX = '_frame'
 
 _SAME_PLACE = 1e-12
 """Frames that differ by less, in metres and halves of radians, are the same."""
-
-_SAME_PLACE_M, _SAME_PLACE_RAD = 1e-3, 2e-3
-"""The data of a sensor may be that far from their frame, as files round right angles."""
 
 
 class Frame(NamedTuple):
@@ -87,13 +85,15 @@ class Frames(NamedTuple):
 
 
 def optical_frames_of_cameras(
-    frames: Frames, sensor_names: Mapping[int, str], scene: Scene, naming: FrameNaming,
+    frames: Frames, sensor_names: Mapping[int, str], optical_names: Mapping[int, str],
+    scene: Scene, naming: FrameNaming,
 ) -> list[Frame]:
     """
     Make the optical frames of cameras.
 
     :param frames: the frames of elements.
     :param sensor_names: the name of the frame of each published sensor.
+    :param optical_names: the names of optical frames that frame ids of cameras mean.
     :return: the optical frames, without those that the file has already.
     """
     indices: dict[str, int] = {}
@@ -103,7 +103,8 @@ def optical_frames_of_cameras(
     optical_frames = []
     cameras = [sensor for sensor in sensor_names if scene.sensors[sensor].is_camera]
     for camera in cameras:
-        name = scene.sensors[camera].optical_frame_id
+        name = (naming.name_from_frame_id(scene.sensors[camera].optical_frame_id)
+                or optical_names.get(camera, ''))
         frame_id = naming.frame_id_from_name(name or sensor_names[camera] + OPTICAL_SUFFIX)
         pose = pose_product(scene.pose_of(camera), OPTICAL_POSE)
         other = frames.owners.item(indices[frame_id]) if frame_id in indices else None
@@ -137,12 +138,13 @@ def check_frames_of_sensors(
         for what, name, poses in (
                 ('frame id', details.frame_id, data_poses),
                 ('optical frame id', details.optical_frame_id, (optical_pose,))):
-            other = owners.get(naming.frame_id_from_name(name))
+            other = owners.get(naming.frame_id_from_name(naming.name_from_frame_id(name)))
             if other is None or other in scene.sensors:
                 continue
-            distance_m, angle_rad = min(
-                distance_and_angle(each, scene.pose_of(other)) for each in poses)
-            if distance_m > _SAME_PLACE_M or angle_rad > _SAME_PLACE_RAD:
+            named = scene.pose_of(other)
+            nearest = min(poses, key=partial(misplacement, named))
+            if misplacement(named, nearest) > 1.0:
+                distance_m, angle_rad = distance_and_angle(named, nearest)
                 away = f'{round(distance_m, 4):g} m and {round(math.degrees(angle_rad), 2):g}'
                 msg = (f'the {what} "{name}" of sensor "{scene.names[sensor]}" is that of a frame '
                        f'{away} degrees away, where its data will appear; name a frame in the '

@@ -160,7 +160,7 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     problems = Problems(scene.files)
     tf_parents = tf_parents_from_scene(scene)
     elements = _published_elements(scene, options, problems)
-    frame_ids, sensor_names = frame_ids_with_sensors(
+    frame_ids, sensor_names, optical_names = frame_ids_with_sensors(
         dict(zip(elements.tolist(), _names(naming, scene, elements, problems), strict=True)),
         scene, naming, options.root_frame)
     # The implicit root of a URDF is its link "world", unless the root frame has its frame id.
@@ -181,7 +181,7 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     check_frames_of_sensors(frames, sensor_names, scene, options.root_frame, naming, problems)
     if options.optical_frames:
         frames = frames.with_frames(
-            optical_frames_of_cameras(frames, sensor_names, scene, naming))
+            optical_frames_of_cameras(frames, sensor_names, optical_names, scene, naming))
     _check_frame_ids(frames, scene, options.root_frame, problems)
     problems.raise_errors()
     _warn_of_loops(tf_parents, scene, problems)

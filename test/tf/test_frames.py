@@ -94,6 +94,41 @@ def test_an_optical_frame_would_take_the_id_of_a_link():
     assert only_tree_error(text).code == 'DUPLICATE_NAME'
 
 
+LENS = '0.1 0 0.05 -90 0 -90'
+BODY_AND_LENS = ('<link name="l">{}</link><link name="lens"><pose degrees="true">'
+                 f'{LENS}</pose></link>')
+
+
+@pytest.mark.parametrize(('frame_id', 'prefix', 'other_frame'), [
+    ('lens', '', ''), ('lens', 'r/', ''), ('r/lens', 'r/', ''), ('m/lens', '', 'm/lens'),
+    ('other/lens', 'r/', 'r/other/lens'),
+])
+@pytest.mark.parametrize('lens', [LENS, '0.1001 0 0.05 -89.95 0 -90'])
+def test_a_camera_names_the_link_in_the_place_of_its_optical_frame(
+        frame_id, prefix, other_frame, lens):
+    sensor = camera(
+        children=f'<gz_frame_id>{frame_id}</gz_frame_id>', pose='0.1 0 0.05 0 0 0')
+    text = model_file(BODY_AND_LENS.format(sensor).replace(LENS, lens))
+    tree = tree_of(text, frame_prefix=prefix)
+    frames = [f'{prefix}m', f'{prefix}l', f'{prefix}lens']
+    assert sorted(tree.frame_ids) == sorted([*frames, *filter(None, [other_frame])])
+    assert tree.warnings == ()
+    if other_frame:
+        assert tree.parent_ids[tree.frame_ids.index(other_frame)] == f'{prefix}lens'
+        assert pose_of(tree, other_frame) == pytest.approx(
+            pose_of(tree, f'{prefix}lens'), abs=1e-3)
+
+
+@pytest.mark.parametrize(('sensor_type', 'x', 'frames'), [
+    ('gpu_lidar', 1, ['m/lens']), ('camera', 2, ['m/lens', 'm/lens_optical'])])
+def test_a_sensor_that_is_no_camera_there_keeps_its_own_frame(sensor_type, x, frames):
+    sensor = (f'<sensor name="s" type="{sensor_type}"><pose>{x} 0 0 0 0 0</pose>'
+              '<gz_frame_id>m/lens</gz_frame_id></sensor>')
+    tree = tree_of(model_file(BODY_AND_LENS.format(sensor)))
+    assert [each for each in tree.frame_ids if '/' in each] == frames
+    assert pose_of(tree, 'm/lens') == [x, 0, 0, 0, 0, 0, 1]
+
+
 # Sensors with the frame id of another element
 
 @pytest.mark.parametrize(('sensor', 'frame_id', 'optical_frame_id', 'away'), [
