@@ -41,7 +41,8 @@ from sdf_pose_bridge.tf.loaded_scene import (
 )
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge.tf.urdf_text import urdf_from_scene
+from sdf_pose_bridge.tf.urdf_robot import robot_from_scene
+from sdf_pose_bridge.tf.urdf_text import UrdfWriter
 
 
 class FrameChange(NamedTuple):
@@ -147,12 +148,9 @@ def write_frame_change(
 
 def _urdf(scene: Scene, request: LoadRequest) -> tuple[str, tuple[SdfWarning, ...]]:
     """Return URDF with warnings, or an empty text with a warning that says why there is none."""
-    options = request.tf_options
     try:
-        return urdf_from_scene(
-            scene, model=options.model, kinds=options.kinds, frame_names=options.frame_names,
-            frame_separator=options.frame_separator, optical_frames=options.optical_frames,
-            root_frame=options.root_frame, resource_paths=request.resource_paths)
+        robot = robot_from_scene(scene, request.tf_options)
+        return UrdfWriter(scene, robot, request.resource_paths).urdf()
     except SdfError as error:
         first = error.errors[0]
         msg = f'there is no robot_description, because no URDF can be made: {first.message}'

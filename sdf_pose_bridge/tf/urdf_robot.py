@@ -95,7 +95,8 @@ def robot_from_scene(scene: Scene, options: TfOptions) -> UrdfRobot:
     kinds = options.kinds or DEFAULT_KINDS
     return _RobotMaker(scene, model, options._replace(
         model=scene.names[model], kinds=kinds | {Kind.LINK}, frame_prefix='',
-        pose_frame='', anchor_models=AnchorModels.ALL, use_joint_states=False)).robot()
+        pose_frame='', anchor_models=AnchorModels.ALL, use_joint_states=False,
+        follows_models=False, has_joint_links=False)).robot()
 
 
 def _model(scene: Scene, name: str) -> int:

@@ -87,14 +87,15 @@ def urdf_from_scene(
         root_frame=root_frame, model=model, frame_names=FrameNames(frame_names),
         frame_separator=frame_separator, optical_frames=optical_frames,
         kinds=DEFAULT_KINDS if kinds is None else frozenset(kinds)))
-    return _Writer(scene, robot, resource_paths, has_capsules=has_capsules).urdf()
+    return UrdfWriter(scene, robot, resource_paths, has_capsules=has_capsules).urdf()
 
 
-class _Writer:
+class UrdfWriter:
+    """Writes a robot of a scene, as :func:`urdf_from_scene`."""
 
     def __init__(
         self, scene: Scene, robot: UrdfRobot, resource_paths: Iterable[str | os.PathLike[str]],
-        *, has_capsules: bool,
+        *, has_capsules: bool = False,
     ) -> None:
         self._scene = scene
         self._robot = robot
@@ -110,6 +111,7 @@ class _Writer:
             self._root.set('version', '1.2')
 
     def urdf(self) -> Urdf:
+        """Write the robot."""
         scene, robot = self._scene, self._robot
         self._add_comment(
             f'Made by sdf_pose urdf from {printable(scene.path)}. Change that file instead.')

@@ -12,6 +12,7 @@ from sdf_texts import joint, model_file, posed, world_file
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.tf.frame_ids import FrameNaming
 from sdf_pose_bridge.tf.loaded_scene import DescriptionFormat, fingerprint_of_scene, LoadRequest
 from sdf_pose_bridge.tf.loading import (
     loaded_scene_from_request,
@@ -103,6 +104,21 @@ def test_urdf_is_that_of_the_model_that_is_published():
     assert '<robot name="n">' in description
     assert [name for name in ('n-l', 'n-f', 'n') if f'<link name="{name}"/>' in description] == [
         'n-l', 'n-f', 'n']
+
+
+def test_all_options_of_frames_reach_the_urdf():
+    class Options(TfOptions):
+        """Options with a rule that only this test knows."""
+
+        @property
+        def naming(self):
+            return FrameNaming(separator='+')
+
+    loaded = loaded_scene_from_request(LoadRequest(
+        '', model_file('<model name="n"><link name="l"/></model>'), tf_options=Options(),
+        description_format=DescriptionFormat.URDF))
+    assert set(loaded.tree.frame_ids) == {'m', 'n', 'n+l'}
+    assert all(f'<link name="{each}"' in loaded.description for each in loaded.tree.frame_ids)
 
 
 def test_urdf_has_shapes():
