@@ -33,16 +33,18 @@ class _Language(NamedTuple):
     name: str
     suffixes: tuple[str, ...]
     """Ends of the names of its files."""
-    marks: tuple[str, ...]
-    """Beginnings of its expressions and statements."""
+    marks: re.Pattern[str]
+    """Its expressions and statements, or their beginnings."""
 
 
-_XACRO = _Language('xacro', ('.xacro',), ())
+_XACRO = _Language('xacro', ('.xacro',), re.compile('(?!)'))
 """Its expressions are an error, not a doubt, so they have rules of their own."""
 _LANGUAGES = (
-    _Language('Jinja', ('.jinja', '.jinja2', '.j2'), ('{{', '{%')),
-    _Language('ERB', ('.erb',), ('<%',)),
-    _Language('EmPy', ('.em', '.empy'), ('@(', '@{', '@[')),
+    _Language('Jinja', ('.jinja', '.jinja2', '.j2'), re.compile('{{|{%')),
+    _Language('ERB', ('.erb',), re.compile('<%')),
+    _Language('EmPy', ('.em', '.empy'), re.compile(r'@[({\[]')),
+    _Language("Python's str.format", (), re.compile(
+        r'(?<![$#%]){[A-Za-z_]\w*(?:[.:!\[][^{}"\s]*)?}')),
 )
 
 
@@ -54,8 +56,7 @@ def hint_about_template(path: str, text: bytes) -> str:
         an empty string if there is none.
     """
     for language in _LANGUAGES:
-        if path.endswith(language.suffixes) or any(
-                mark.encode() in text for mark in language.marks):
+        if path.endswith(language.suffixes) or language.marks.search(text.decode('latin-1')):
             return f'; the file {_cure(language, path)}'
     return ''
 
@@ -89,7 +90,7 @@ def _warn_about_template(root: XmlElement, path: str, sources: Sources) -> None:
     for xml in _EXPANDED_PARTS(root):
         for value, found in _values(xml):
             for language in _LANGUAGES:
-                if any(mark in value for mark in language.marks):
+                if language.marks.search(value):
                     sources.warning(xml, f'{found} {_cure(language, path)}')
                     return
 
@@ -143,9 +144,11 @@ def _refuse_xacro(root: XmlElement, path: str, sources: Sources) -> None:
             else:
                 found.append(part)
         if found:
-            target = name.removesuffix('.xacro') if is_xacro else f'expanded_{name}'
+            target = name.removesuffix('.xacro')
             if not Path(target).suffix:
                 target += '.sdf' if is_sdf else '.urdf'
+            while target == name or os.path.exists(Path(path).parent / target):  # noqa: PTH110
+                target = f'expanded_{target}'
             command = f': {shlex.join(["xacro", name, "-o", target])}' if '.' in name else ''
             msg = (f'{found[0]} is for xacro; run xacro first, and read the file that it writes'
                    f'{command}')

@@ -25,6 +25,7 @@ _HINTS = {
     'ignition_frame_id': 'Gazebo looks for it in <sensor>',
     **{f'model/{tag}': 'URDF that is made of the model has it' for tag in URDF_TAGS},
     'pose/@frame': 'since version 1.7 it is relative_to',
+    'use_parent_model_frame': 'since version 1.7, true is <xyz expressed_in="__model__">',
     'inertial/pose/@relative_to': 'an inertial is placed in its link',
     'parent/@link': 'it is from URDF; SDFormat has <parent>name of a frame</parent>',
     'child/@link': 'it is from URDF; SDFormat has <child>name of a frame</child>',

@@ -134,6 +134,9 @@ def bytes_from_file(path: str, usage: Usage, *, allows_pipe: bool = False) -> by
             usage.add('bytes_read', status.st_size, place)
             text = file.read(usage.left('bytes_read') + 1 if is_pipe else status.st_size)
             usage.add('bytes_read', len(text) - status.st_size, place)
+            if text.startswith(b'version https://git-lfs.'):
+                msg = 'the file is a pointer of Git LFS; "git lfs pull" fetches its content'
+                raise FileReadError(msg, place)
             return text
     except (OSError, ValueError) as error:  # ValueError: a path with a zero byte
         msg = f'the file cannot be read: {getattr(error, "strerror", None) or error}{_cure(path)}'

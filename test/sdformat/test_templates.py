@@ -43,9 +43,12 @@ def test_unexpanded_file_is_refused(text, found):
     ('arm.urdf', 'xacro arm.urdf -o expanded_arm.urdf'),
     ('arm.urdf.xacro', 'xacro arm.urdf.xacro -o arm.urdf'),
     ('arm.xacro', 'xacro arm.xacro -o arm.urdf'),
+    ('old.xacro', 'xacro old.xacro -o expanded_expanded_old.urdf'),
 ])
 def test_the_error_tells_the_command(tmp_path, name, command):
     path = tmp_path / name
+    for existing in ('old.urdf', 'expanded_old.urdf'):
+        (tmp_path / existing).touch()
     write = sdf if '.sdf' in name else urdf
     path.write_text(write('<link name="${a}"/>'), encoding='utf-8')
     (error,) = errors_of_file(path)
@@ -146,11 +149,19 @@ def test_the_template_beside_a_file_is_named(tmp_path):
     ('<link name="a{{ n }}"/>', 'name="a{{ n }}" of <link> is for Jinja'),
     ('<link name="a"><sensor name="s" type="imu"><topic>@(n)</topic></sensor></link>',
      '"@(n)" in <topic> is for EmPy'),
+    *((f'<link name="{name}"/>', f'name="{name}" of <link> is for Python\'s str.format')
+      for name in ('{n}', 'a_{n:02d}', '{n.side}', '{n[0]!r}')),
 ])
 def test_template_that_is_xml_has_one_warning(content, found):
     scene = load_text(model_file(content + '<link name="@(m)"/>'))
     (warning,) = scene.warnings
     assert warning.message.startswith(found)
+
+
+@pytest.mark.parametrize('text', ['{}', '{1}', '{"a": 1}', '{ a }', '{a b}', '${a}', '#{a}', '{a'])
+def test_other_braces_are_no_template(text):
+    topic = f'<sensor name="s" type="imu"><topic>{text}</topic></sensor>'
+    assert load_text(model_file(f'<link name="l">{topic}</link>')).warnings == ()
 
 
 def test_statement_before_the_first_element_has_a_warning():

@@ -3,7 +3,7 @@
 """Warnings of elements and attributes that SDFormat or URDF does not define."""
 
 import pytest
-from sdf_texts import LINK, link_with, model_file, world_file, write_files
+from sdf_texts import LINK, link_with, model_file, TWO_LINKS, world_file, write_files
 from urdf_texts import joint, link, robot
 
 from sdf_pose_bridge import load, load_text
@@ -72,6 +72,10 @@ def messages_of(text):
                 'type="t"><waypoint><time>0</time><pose frame="x">0 0 0 0 0 0</pose></waypoint>'
                 '</trajectory></script></actor>', version='1.6'),
      'frame="x" of <pose> is not defined in SDFormat'),
+    (model_file(TWO_LINKS + '<joint name="j" type="revolute"><parent>a</parent><child>b</child>'
+                '<axis><use_parent_model_frame>1</use_parent_model_frame></axis></joint>'),
+     '<use_parent_model_frame> in <axis> is not defined in SDFormat; since version 1.7, true is '
+     '<xyz expressed_in="__model__">'),
     (link_with('<inertial><pose relative_to="l"/></inertial>'),
      'relative_to="l" of <pose> is not defined in SDFormat; an inertial is placed in its link'),
     (model_file(LINK + '<plugin name="p" filename="f" file="g"/>'),

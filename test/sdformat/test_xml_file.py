@@ -60,6 +60,12 @@ def test_only_regular_files_are_read(path):
         bytes_from_file(path, Usage())
 
 
+def test_pointer_of_git_lfs_is_named(tmp_path):
+    (tmp_path / 'a.dae').write_text('version https://git-lfs.github.com/spec/v1\noid sha256:0\n')
+    with pytest.raises(FileReadError, match='"git lfs pull" fetches its content'):
+        bytes_from_file(str(tmp_path / 'a.dae'), Usage())
+
+
 def test_named_pipe_is_refused_at_once(tmp_path):
     os.mkfifo(tmp_path / 'pipe')
     with pytest.raises(FileReadError, match='not a regular file'):

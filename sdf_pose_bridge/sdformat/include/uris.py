@@ -29,6 +29,8 @@ from sdf_pose_bridge.sdformat.xml_tree import child_elements, first_child, text_
 _SCHEME = re.compile(r'([A-Za-z][A-Za-z0-9+.-]*)://')
 _SCHEME_OF_ADDRESS = re.compile(r'[A-Za-z][A-Za-z0-9+.-]+(?=:/)')
 _WEB = ('http', 'https')
+_FUEL_HOSTS = ('fuel.gazebosim.org', 'fuel.ignitionrobotics.org', 'app.gazebosim.org')
+"""Names of one server; Gazebo's cache has its models under the first, and older ones elsewhere."""
 _SHARED = ('model', 'package')
 """Schemes of URIs that begin with the name of a model or package."""
 _RELATIVE = ('', 'file')
@@ -247,22 +249,25 @@ class ResourceFinder(NamedTuple):
         steps = [unquote(part) for part in parts.path.split('/') if part]
         if steps and re.fullmatch(r'[0-9]+\.[0-9]+', steps[0]):
             steps = steps[1:]
+        if steps[1:3] == ['fuel', 'models']:  # in addresses of its web pages
+            del steps[1]
         # Without its per cent escapes, each step must be the name of one file.
         if len(steps) < 3 or steps[1] != 'models' or any(
                 step in ('', '.', '..') or '/' in step or '\0' in step
                 for step in (parts.netloc, *steps)):
             return
         version, *rest = steps[3:] or ['tip']
-        model = f'{self.fuel_cache}/{parts.netloc}'
-        for part in steps[:3]:
-            model = _entry_in_any_case(model, part)
-        versions = [version]
-        if version == 'tip':
-            numbers = [
-                name for name in _entries(model) if name.isascii() and name.isdecimal()]
-            versions = sorted(numbers, key=int, reverse=True)
-        for candidate in versions:
-            yield '/'.join([model, candidate, *(rest[1:] if rest[:1] == ['files'] else rest)])
+        for host in _FUEL_HOSTS if parts.netloc in _FUEL_HOSTS else (parts.netloc,):
+            model = f'{self.fuel_cache}/{host}'
+            for part in steps[:3]:
+                model = _entry_in_any_case(model, part)
+            versions = [version]
+            if version == 'tip':
+                numbers = [
+                    name for name in _entries(model) if name.isascii() and name.isdecimal()]
+                versions = sorted(numbers, key=int, reverse=True)
+            for candidate in versions:
+                yield '/'.join([model, candidate, *(rest[1:] if rest[:1] == ['files'] else rest)])
 
 
 def resource_finder(

@@ -138,6 +138,8 @@ def test_package_is_found_by_its_marker(tmp_path):
     ('https://fuel.gazebosim.org/1.0/Open/models/Big%20Box', '10'),
     ('https://fuel.gazebosim.org/1.0/Open/models/Big%20Box/tip', '10'),
     ('https://fuel.gazebosim.org/1.0/open/models/big box/2', '2'),
+    ('https://fuel.ignitionrobotics.org/1.0/Open/models/Big Box', '10'),
+    ('https://app.gazebosim.org/Open/fuel/models/Big Box', '10'),
 ])
 def test_fuel_model_is_found_in_the_cache(uri, version, tmp_path):
     for number in ('2', '9', '10'):
