@@ -74,8 +74,8 @@ def messages_of(text):
      'frame="x" of <pose> is not defined in SDFormat'),
     (model_file(TWO_LINKS + '<joint name="j" type="revolute"><parent>a</parent><child>b</child>'
                 '<axis><use_parent_model_frame>1</use_parent_model_frame></axis></joint>'),
-     '<use_parent_model_frame> in <axis> is not defined in SDFormat; since version 1.7, true is '
-     '<xyz expressed_in="__model__">'),
+     ('<use_parent_model_frame> in <axis> is not defined in SDFormat; since version 1.7, true is '
+      '<xyz expressed_in="__model__">')),
     (link_with('<inertial><pose relative_to="l"/></inertial>'),
      'relative_to="l" of <pose> is not defined in SDFormat; an inertial is placed in its link'),
     (model_file(LINK + '<plugin name="p" filename="f" file="g"/>'),
