@@ -6,12 +6,14 @@ SHELL := bash
 .PHONY: help setup demo test test_core test_long run lint bench differential fuzz growth soak licenses audit docs pictures \
   coverage wheel_check release_check release clean
 
-# The distribution of ROS 2, versions of other packages, and a folder with another rclpy, also for
-# the scripts in underlay.
+# The distribution of ROS 2, versions of other packages, a folder with another rclpy, and another
+# middleware and its prefix, also for the scripts in underlay.
 ROS ?= jazzy
 VERSIONS ?=
 RCLPY ?=
-export ROS VERSIONS RCLPY
+RMW ?=
+RMW_FOLDER ?=
+export ROS VERSIONS RCLPY RMW RMW_FOLDER
 
 # Without bytecode, each process of the tests would compile everything again.
 unexport PYTHONDONTWRITEBYTECODE
@@ -58,6 +60,7 @@ help:
 	@echo 'ROS=lyrical uses ROS 2 Lyrical from /opt/ros/lyrical; it is not on PyPI.'
 	@echo 'VERSIONS=noble uses numpy, lxml, pytest and more as Ubuntu 24.04 has them, with Python 3.12.'
 	@echo 'RCLPY=<folder> uses the rclpy in that folder, for example: make test ROS=kilted RCLPY=~/rclpy_10'
+	@echo 'RMW=rmw_cyclonedds_cpp uses that middleware of /opt/ros, or of the prefix RMW_FOLDER=<folder>.'
 	@echo 'PYTHON=python3.12 chooses the Python that the environment is made with.'
 
 setup:

@@ -43,7 +43,8 @@ def main() -> int:
         print(f'    {result.ours}, {result.ratio}: {result.reached}', file=sys.stderr)
         results.append(result)
     print(
-        f'Python {platform.python_version()}, numpy {np.__version__}, {os.cpu_count()} cores;'
+        f'Python {platform.python_version()}, numpy {np.__version__}, {os.cpu_count()} cores, '
+        f'{os.environ.get("RMW_IMPLEMENTATION", "no ROS")};'
         f' medians of {RUNS} runs of each, in turns'
     )
     print(table(results))

@@ -3,6 +3,7 @@
 """ROS domains that a test has to itself, also while other tests run beside it."""
 
 import contextlib
+import os
 from pathlib import Path
 import random
 import re
@@ -14,6 +15,10 @@ _CLAIMS = []
 _FIRST_PORT = 7400
 _PORTS = 250
 _IS_COMPLETE = (2).to_bytes(4, 'little')
+
+needs_fast_dds = pytest.mark.skipif(
+    'fastrtps' not in os.environ.get('RMW_IMPLEMENTATION', 'rmw_fastrtps_cpp'),
+    reason='is about Fast DDS')
 
 
 def port_of_claim(domain):

@@ -179,11 +179,22 @@ def test_the_node_is_started_with_words_for_a_second_shell(built, tmp_path):
 @pytest.mark.parametrize(('environment', 'words'), [
     ({'ROS_DISTRO': OTHER_DISTRO, 'ROS': DISTRO}, f'already has ROS 2 {OTHER_DISTRO}'),
     ({'RCLPY': '/nowhere'}, 'no rclpy'),
+    ({'RMW': 'rmw_x', 'RMW_FOLDER': '/nowhere'}, 'no lib/librmw_x.so'),
 ])
-def test_setup_bash_refuses_another_ros_and_a_folder_without_rclpy(built, environment, words):
+def test_setup_bash_refuses_another_ros_and_an_empty_folder(built, environment, words):
     result = shell(built, **environment)
     assert (result.returncode, result.stderr.count('\n')) == (1, 1)
     assert words in result.stderr
+
+
+def test_setup_bash_uses_a_given_middleware(built, tmp_path):
+    (tmp_path / 'lib').mkdir()
+    (tmp_path / 'lib/librmw_x.so').touch()
+    result = shell(
+        f'{built}; for name in RMW_IMPLEMENTATION LD_PRELOAD AMENT_PREFIX_PATH LD_LIBRARY_PATH; '
+        'do echo ${!name%%:*}; done', RMW='rmw_x', RMW_FOLDER=str(tmp_path))
+    assert result.stdout.split() == [
+        'rmw_x', f'{tmp_path}/lib/librmw_x.so', str(tmp_path), f'{tmp_path}/lib']
 
 
 def test_setup_bash_puts_a_given_rclpy_before_the_one_of_ros(built, tmp_path):

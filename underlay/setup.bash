@@ -3,7 +3,8 @@
 #
 # To be sourced in bash: ROS 2 Jazzy, the tools, and this repository's packages as last built. With
 # ROS=kilted or ROS=lyrical in the environment, that ROS 2; with VERSIONS=noble, the versions of
-# Ubuntu 24.04; with RCLPY=<folder>, the rclpy in that folder instead of the one of ROS 2.
+# Ubuntu 24.04; with RCLPY=<folder>, the rclpy in that folder instead of the one of ROS 2; with
+# RMW=<name>, that middleware, from the prefix RMW_FOLDER=<folder> if ROS 2 does not have it.
 
 if [ -z "${BASH_VERSION-}" ]; then
   echo 'This is for bash; start bash and source it there.' >&2
@@ -33,4 +34,21 @@ if [[ -n ${RCLPY-} ]]; then
   PYTHONPATH=${PYTHONPATH#:}
   export PYTHONPATH=$_spb_rclpy:${PYTHONPATH%:}
   unset _spb_rclpy
+fi
+if [[ -n ${RMW-} ]]; then
+  export RMW_IMPLEMENTATION=$RMW
+  if [[ -n ${RMW_FOLDER-} ]]; then
+    if [[ ! -r $RMW_FOLDER/lib/lib$RMW.so ]]; then
+      echo "RMW_FOLDER names '$RMW_FOLDER', and there is no lib/lib$RMW.so in that folder." >&2
+      return 1
+    fi
+    RMW_FOLDER=$(CDPATH='' cd -- "$RMW_FOLDER" && pwd -P)
+    # The wheels' librcl is linked to Fast DDS, and takes another one only if that is loaded first.
+    export RMW_FOLDER LD_PRELOAD=$RMW_FOLDER/lib/lib$RMW.so
+    export LD_LIBRARY_PATH=$RMW_FOLDER/lib:${LD_LIBRARY_PATH-}
+    export AMENT_PREFIX_PATH=$RMW_FOLDER:${AMENT_PREFIX_PATH-}
+  elif [[ $RMW != rmw_fastrtps_cpp && $(< "$VIRTUAL_ENV/ros_prefix") == "$VIRTUAL_ENV" ]]; then
+    echo "RMW names '$RMW', and PyPI has only rmw_fastrtps_cpp; name its prefix with RMW_FOLDER." >&2
+    return 1
+  fi
 fi

@@ -82,9 +82,9 @@ def status_from_scene(
 
     :param failure: the errors of the last load; empty if it succeeded.
     :param unreported: the joints and models whose positions or poses are missing.
-    :return: ERROR if the last load failed, so that the scene before it is still published; WARN if
-        the scene has warnings, or joints or models that are not reported, or topics have
-        problems; otherwise OK.
+    :return: ERROR if the last load failed, so that the scene before it is still published, or if
+        messages end in internal errors; WARN if the scene has warnings, or joints or models that
+        are not reported, or topics have problems; otherwise OK.
     """
     warnings = loaded.warnings
     loaded_at = datetime.datetime.fromtimestamp(
@@ -109,6 +109,9 @@ def status_from_scene(
     if failure:
         level = DiagnosticStatus.ERROR
         text = f'the last load failed, the scene before it is published: {failure[0]}'
+    elif unreported.failures:
+        level = DiagnosticStatus.ERROR
+        text = '; '.join(unreported.failures)
     elif unreported.problems:
         level = DiagnosticStatus.WARN
         text = '; '.join(unreported.problems)

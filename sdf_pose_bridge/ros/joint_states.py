@@ -9,17 +9,12 @@ The transforms that a message changes are published on ``/tf`` with the stamp of
 is newer than their last one. Frames of joints and models that no message has named are not
 published. If these are where the file puts them, all frames are published before the first
 message, and then these frames with each message, so that TF is complete.
-
-With a highest rate, a message is published at once and begins a period, which is the same for all
-topics. Later ones wait in the subscriptions for its end. Then the newest of them are published in
-one message, and another period begins if there are any. The first message of a silent topic is
-published at once, unless all topics are silent, as when many robots start together.
 """
 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 import contextlib
 import math
 import threading
@@ -36,7 +31,9 @@ from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.ros.background import result_from_executor, wake
 from sdf_pose_bridge.ros.cdr import NANOSECONDS
 from sdf_pose_bridge.ros.log_lines import line_about_unreported, text_about_defect, Unreported
+from sdf_pose_bridge.ros.message_failures import MessageFailures
 from sdf_pose_bridge.ros.parameters import Settings
+from sdf_pose_bridge.ros.period import NO_ROWS, Period, union
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
 from sdf_pose_bridge.ros.state_messages import Effect, Effects, Message, StateSource
 from sdf_pose_bridge.ros.state_sources import StateSources
@@ -67,8 +64,6 @@ LONGEST_ANSWER_S = 60.0
 _REST_S = 0.5
 _LONGEST_SLEEP_S, _CLOCK_PERIOD_S = 0.1, 0.01
 """Longest waits in a period: before too many messages wait, and for a simulated clock."""
-
-_NO_ROWS: NDArray[np.intp] = np.array([], np.intp)
 
 
 class _Target(NamedTuple):
@@ -108,12 +103,15 @@ class JointStates:
         self._target = self._next_target = _Target(frames, lookup, (), settings)
         self._calls: deque[Callable[[], object]] = deque()
         self._has_to_end = False
+        self._failures = MessageFailures(self._log_defect, InvalidHandle, MemoryError)
         # The thread alone changes everything else. First, what is due at some monotonic time.
         self._due: dict[Callable[[], None], float] = {}
         self._topics_due = 0.0
         self._now_ns = 0
         self._is_simulated = self._has_jumped = False
         self._has_moved = self._has_reported_missing = False
+        self._period: Period[StateSource] = Period()
+        self._processed: set[StateSource] = set()
         self._start_frames()
         self._end_period()
         self._thread = threading.Thread(target=self._run, name='joint states', daemon=True)
@@ -170,8 +168,9 @@ class JointStates:
         topics = [
             topic.name for topic in self._sources.joint_state_topics
             if not positions.unknown(joints[:1], topic.model)] if joints else []
-        problems = self._effects.problems(target.sources)
-        return Unreported(len(joints), (*joints, '')[0], topics, models, problems)
+        return Unreported(
+            len(joints), (*joints, '')[0], topics, models,
+            self._effects.problems(target.sources), self._failures.problems())
 
     def _follow_sources(
         self, unwanted: Sequence[StateTopic], target: _Target | None = None,
@@ -193,38 +192,39 @@ class JointStates:
     # The thread
 
     def _run(self) -> None:
-        while not self._has_to_end:
-            try:
-                self._turn()
-            except InvalidHandle:
-                break  # the node was destroyed
-            except MemoryError:
-                raise
-            except Exception:  # noqa: BLE001 - includes defects
-                self._logger.error(text_about_defect('joint states'), throttle_duration_sec=60.0)
+        with contextlib.suppress(InvalidHandle):  # the node was destroyed
+            while not self._has_to_end:
+                self._processed.clear()
+                with self._failures.noted(self._processed):
+                    self._turn()
+                    if self._processed:
+                        self._failures.note_success()
         self._wait_set.close()
         self._make_calls(len(self._calls))
+
+    def _log_defect(self) -> None:
+        self._logger.error(text_about_defect('joint states'), throttle_duration_sec=60.0)
 
     def _turn(self) -> None:
         """Wait once, and do what is due."""
         with self._node.handle:
             pass  # the wait set would not notice that the node was destroyed
         call_count = len(self._calls)
-        # Sources with a subscription come first.
+        awaited = self._period.awaited
+        topics = [each for each in awaited if each.subscription is not None]
         indices = self._wait_set.wait(
-            [each.subscription for each in self._awaited if each.subscription is not None],
-            0.0 if call_count else self._longest_wait())
-        ready = [self._awaited[index] for index in indices]
-        ready += [each for each in self._awaited[-1:] if each.has_answers]
+            [each.subscription for each in topics], 0.0 if call_count else self._longest_wait())
+        ready = [topics[index] for index in indices]
+        ready += [each for each in awaited if each.has_answers]
         if self._target is not self._next_target:
             self._follow_next_target()
             return  # the messages are ready again
         self._follow_clock()
-        has_ended = self._is_in_period and (
-            self._has_jumped or self._now_ns >= self._period_ends_ns)
+        has_ended = self._period.has_begun and (
+            self._has_jumped or self._now_ns >= self._period.ends_ns)
         if ready and not has_ended:
             self._take(ready, at_once=True)
-        if self._is_in_period and (has_ended or call_count or not ready):
+        if self._period.has_begun and (has_ended or call_count or not ready):
             self._take(self._target.sources, at_once=False)
         if has_ended:
             self._end_period()
@@ -236,10 +236,10 @@ class JointStates:
 
     def _longest_wait(self) -> float:
         seconds = min(self._due.values(), default=math.inf) - time.monotonic()
-        if self._is_in_period:
+        if self._period.has_begun:
             seconds = min(
                 seconds, _LONGEST_SLEEP_S, _CLOCK_PERIOD_S if self._is_simulated
-                else (self._period_ends_ns - time.time_ns()) / NANOSECONDS)
+                else (self._period.ends_ns - time.time_ns()) / NANOSECONDS)
         return max(seconds, 0.0)
 
     def _make_calls(self, count: int) -> None:
@@ -258,25 +258,18 @@ class JointStates:
     def _start_frames(self) -> None:
         target = self._target
         self._effects = Effects(target.frames, target.lookup, target.settings.model_pose_frames)
-        self._waiting = _NO_ROWS
+        self._period.forget()
         now = time.monotonic()
         self._due[self._publish_all] = self._due[self._publish_at_rest] = now
         self._due[self._look_at_publishers] = now + PUBLISHERS_PERIOD_S
         if not self._has_reported_missing:
             self._due[self._end_grace] = now + GRACE_S
 
-    # Periods
-
-    @property
-    def _is_in_period(self) -> bool:
-        return self._period_ends_ns < math.inf
-
     def _end_period(self) -> None:
         """Publish what has waited, if anything has; otherwise publish the next message at once."""
-        rows, self._waiting = self._waiting, _NO_ROWS
-        self._period_ends_ns, self._awaited = math.inf, self._target.sources
+        rows, sources = self._period.end(self._target.sources), self._target.sources
         silent_ns = self._now_ns - max(2.0 * self._target.period_ns, SILENCE_NS)
-        self._publish(rows, [each for each in self._awaited if each.last_ns < silent_ns])
+        self._publish(rows, [each for each in sources if each.last_ns < silent_ns])
 
     # Messages
 
@@ -293,14 +286,27 @@ class JointStates:
         # many messages does not delay the others.
         ends_at = time.monotonic() + TOPICS_PERIOD_S
         while sources and time.monotonic() < ends_at:
-            sources = [source for source in sources if source.take(self._effects, newest)]
+            sources = [source for source in sources if self._take_one(source, newest)]
             if at_once:
-                self._publish(_union([self._move(each) for each in newest.values()]))
+                self._publish(self._move_all(newest))
                 newest.clear()
                 # The wait tells whether there are more. Calls wait for all of them.
-                if self._is_in_period or not self._calls:
+                if self._period.has_begun or not self._calls:
                     return
-        self._waiting = _union([self._waiting, *(self._move(each) for each in newest.values())])
+        self._period.add(self._move_all(newest))
+
+    def _take_one(self, source: StateSource, newest: dict[Effect, Message]) -> bool:
+        with self._failures.noted([source]):
+            return source.take(self._effects, newest)
+        return True
+
+    def _move_all(self, newest: Mapping[Effect, Message]) -> NDArray[np.intp]:
+        parts = []
+        for message in newest.values():
+            with self._failures.noted([message.effect.source]):
+                parts.append(self._move(message))
+                self._processed.add(message.effect.source)
+        return union(parts)
 
     def _follow_clock(self) -> None:
         """Accept any stamp after time has jumped back, for example when a bag starts again."""
@@ -311,20 +317,20 @@ class JointStates:
         if self._has_jumped:
             self._logger.info('time has jumped back', throttle_duration_sec=10.0)
             self._target.frames.forget_stamps()
-            self._waiting = _NO_ROWS
+            self._period.forget()
 
     def _move(self, message: Message) -> NDArray[np.intp]:
         target, effect, source = self._target, message.effect, message.effect.source
         positions, ignores_stamps = target.frames.positions, target.settings.ignore_timestamp
         stamp_ns = message.stamp_ns or self._node.get_clock().now().nanoseconds
         if self._has_jumped and stamp_ns > self._now_ns:
-            return _NO_ROWS  # it was sent before that
+            return NO_ROWS  # it was sent before that
         try:
             values = self._effects.values(message)
         except SdfError as error:
             reason = str(error)
             source.warn('frame', lambda: f'a pose from {source.name} is ignored: {reason}')
-            return _NO_ROWS
+            return NO_ROWS
         source.last_ns = self._now_ns
         source.warn_about_invalid(positions.update(
             effect.selection, values, stamp_ns, ignore_stamps=ignores_stamps))
@@ -360,17 +366,15 @@ class JointStates:
         now = time.monotonic()
         self._due[self._publish_to_listeners] = max(self._topics_due, now)
         self._due[self._publish_at_rest] = now + _REST_S
-        if self._is_in_period:
-            self._waiting = np.setdiff1d(self._waiting, rows)
-            self._awaited = [each for each in self._awaited if each.last_ns < self._now_ns]
+        if self._period.has_begun:
+            self._period.publish_early(rows, self._now_ns)
         # Simulated time that has not begun would never end a period.
         elif self._target.period_ns and self._now_ns:
-            self._period_ends_ns = self._now_ns + self._target.period_ns
-            self._awaited = awaited
+            self._period.begin(self._now_ns + self._target.period_ns, awaited)
 
     def _publish_all(self) -> None:
         """Publish all frames on ``/tf``; repeatedly as long as no message has come."""
-        self._waiting = _NO_ROWS
+        self._period.forget()
         if self._target.frames.publish_all():
             self._due[self._publish_all] = time.monotonic() + INITIAL_PERIOD_S
 
@@ -393,8 +397,3 @@ class JointStates:
         if line:
             self._has_reported_missing = True
             self._logger.info(line)
-
-
-def _union(parts: Sequence[NDArray[np.intp]]) -> NDArray[np.intp]:
-    """Return the rows of all parts, most often of one, in ascending order."""
-    return parts[0] if len(parts) == 1 else np.unique(np.concatenate([_NO_ROWS, *parts]))

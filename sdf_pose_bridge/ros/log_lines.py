@@ -74,6 +74,8 @@ class Unreported(NamedTuple):
     """The names of the models."""
     problems: Sequence[str] = ()
     """A line for each source of messages with old stamps, and for other publishers of frames."""
+    failures: Sequence[str] = ()
+    """A line for each source whose messages end in internal errors."""
 
 
 def line_from_text(text: object) -> str:

@@ -1,10 +1,10 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Choose the profile of Fast DDS, the default middleware of ROS 2.
+Choose a profile of the middleware.
 
-With its default settings, the first message arrives late in many starts, as the profiles of this
-package explain.
+With the default settings of Fast DDS, the default middleware of ROS 2, the first message arrives
+late in many starts, as the profiles of this package explain. Other middlewares need none.
 """
 
 from __future__ import annotations
@@ -17,8 +17,12 @@ from ament_index_python.packages import get_package_share_directory
 
 
 class Profile(NamedTuple):
-    """A profile of this package, and the other sources of profiles of its Fast DDS."""
+    """A profile of this package, and the other sources of profiles of its middleware."""
 
+    middlewares: tuple[str, ...]
+    """Values of ``RMW_IMPLEMENTATION``."""
+    distros: tuple[str, ...]
+    """The distributions of ROS 2 whose version of the middleware accepts it."""
     file: str
     """Path of the profile in the share directory of this package."""
     variable: str
@@ -27,34 +31,32 @@ class Profile(NamedTuple):
     """The name of a file of profiles that is used in the working directory."""
 
 
-FAST_DDS_2 = Profile(
-    'config/fastdds_profile.xml', 'FASTRTPS_DEFAULT_PROFILES_FILE',
-    'DEFAULT_FASTRTPS_PROFILES.xml')
-FAST_DDS_3 = Profile(
-    'config/fastdds3_profile.xml', 'FASTDDS_DEFAULT_PROFILES_FILE', 'DEFAULT_FASTDDS_PROFILES.xml')
-
-PROFILES = {'jazzy': FAST_DDS_2, 'kilted': FAST_DDS_3, 'lyrical': FAST_DDS_3}
-"""The profile for each distribution of ROS 2; their Fast DDS reject each other's."""
-
-VARIABLES = (FAST_DDS_2.variable, FAST_DDS_3.variable)
-"""The environment variables; each Fast DDS ignores the other one."""
-
 _FAST_DDS = ('', 'rmw_fastrtps_cpp', 'rmw_fastrtps_dynamic_cpp')
+
+PROFILES = (
+    Profile(_FAST_DDS, ('jazzy',), 'config/fastdds_profile.xml', 'FASTRTPS_DEFAULT_PROFILES_FILE',
+            'DEFAULT_FASTRTPS_PROFILES.xml'),
+    Profile(_FAST_DDS, ('kilted', 'lyrical'), 'config/fastdds3_profile.xml',
+            'FASTDDS_DEFAULT_PROFILES_FILE', 'DEFAULT_FASTDDS_PROFILES.xml'),
+)
+"""The profiles; a version of a middleware ignores the variables of the others."""
 
 
 def use_profile(environment: MutableMapping[str, str]) -> str:
     """
-    Make Fast DDS use the profile of this package, unless the user has chosen another one.
+    Make the middleware use the profile of this package, unless the user has chosen another one.
 
-    :param environment: the environment variables of the process. Fast DDS reads them when the
-        first node is created.
+    :param environment: the environment variables of the process. The middleware reads them when
+        the first node is created.
     :return: one sentence for the log: the profile that is used, or why it is not.
     """
     middleware = environment.get('RMW_IMPLEMENTATION', '')
-    chosen = [variable for variable in VARIABLES if variable in environment]
     distro = environment.get('ROS_DISTRO', '')
-    profile = PROFILES.get(distro)
-    if middleware not in _FAST_DDS:
+    profiles = [each for each in PROFILES if middleware in each.middlewares]
+    variables = [each.variable for each in profiles]
+    chosen = [variable for variable in variables if variable in environment]
+    profile = next((each for each in profiles if distro in each.distros), None)
+    if not profiles:
         reason = f'the middleware is {middleware}'
     elif chosen:
         reason = f'{chosen[0]} is set'
@@ -69,7 +71,8 @@ def use_profile(environment: MutableMapping[str, str]) -> str:
             reason = 'the package is not installed'
         else:
             environment[profile.variable] = path
-            (other_variable,) = set(VARIABLES) - {profile.variable}
-            return (f'the Fast DDS profile {path} is used; set {profile.variable} to use your '
-                    f'own, or {other_variable} to an empty string to use none')
-    return f'the Fast DDS profile of this package is not used: {reason}'
+            other = [f', or {each} to an empty string to use none'
+                     for each in variables if each != profile.variable]
+            return (f'the middleware profile {path} is used; set {profile.variable} to use your '
+                    f'own{"".join(other[:1])}')
+    return f'no middleware profile of this package is used: {reason}'

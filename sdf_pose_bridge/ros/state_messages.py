@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -22,10 +23,10 @@ from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.ros.cdr import LONGEST_READ_S, NANOSECONDS, SerializedNames, StampedPose
 from sdf_pose_bridge.ros.log_lines import names_in_line, RareWarnings
+from sdf_pose_bridge.ros.message_counts import MessageCounts
 from sdf_pose_bridge.ros.other_publishers import names_of_nodes, publishers_of_topic
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
 from sdf_pose_bridge.ros.setting_rules import MOST_CHARACTERS
-from sdf_pose_bridge.ros.wait_set import NO_NUMBER
 from sdf_pose_bridge.tf.joint_motion import NO_DOF
 from sdf_pose_bridge.tf.joint_positions import LARGEST_POSITION, Selection
 from sdf_pose_bridge.tf.lookup import PoseLookup
@@ -49,9 +50,6 @@ _LEAST_AGE_NS = 1_000_000
 """Smallest difference that makes a stamp old. Stamps are the same while a simulation pauses, and
 one nanosecond newer after a reload."""
 
-_LEAST_OLDER = 3
-"""Smallest number of messages in a period the numbers of which do not go up, if there are several
-publishers. A publisher that starts again has one."""
 
 
 @dataclass(eq=False)
@@ -71,14 +69,8 @@ class Effect:
     """The oldest last stamp of the transforms when a message moved none, as its own is older."""
     late_since: float = 0.0
     """Monotonic time in s since which there have been only such messages and this stamp."""
-    number: int = 0
-    """The number that its publisher has given the last message."""
-    message_count: int = 0
-    """Number of messages in this period of :meth:`Effects.look_at_publishers`."""
-    older_count: int = 0
-    """Number of these the number of which did not go up."""
-    period_count: int = 0
-    """Number of periods up to the last one, each with a message."""
+    counts: MessageCounts = field(default_factory=MessageCounts)
+    """The messages, to find several publishers."""
 
 
 class Message(NamedTuple):
@@ -119,8 +111,8 @@ class StateSource(RareWarnings):
         self.model = model
         self.last_ns = 0
         """Time of the node when the last message was used; the caller sets it."""
-        self.number = NO_NUMBER
-        """The number that its publisher has given the last message."""
+        self.number: int | None = None
+        """The number that its publisher has given the last message, if messages have numbers."""
         self._node = node
         super().__init__(node.get_logger())
 
@@ -143,9 +135,7 @@ class StateSource(RareWarnings):
         messages = self.messages(effects)
         for message in messages or ():
             effect = message.effect
-            effect.message_count += 1
-            effect.older_count += self.number <= effect.number < NO_NUMBER
-            effect.number = self.number
+            effect.counts.add(message.stamp_ns, message.values, self.number)
             known = newest.get(effect, message)
             if not 0 < message.stamp_ns < known.stamp_ns:
                 newest[effect] = message
@@ -256,7 +246,7 @@ class Effects:
         if found is None:
             model = source.model
             found = Effect(source, self._positions.selection(names.names, model), names)
-            self._make_room(BYTES_OF_OBJECTS + len(names.data))
+            self._make_room(BYTES_OF_OBJECTS + len(names.data) + 16 * len(names.names))
             self._effects[source, names.names] = found
             unknown = self._positions.unknown(names.names, model)
             if unknown:
@@ -351,20 +341,21 @@ class Effects:
         Report joints and models about which several publishers send messages at once.
 
         These use several topics for two periods, as a publisher may replace another one in the
-        first; or their numbers do not go up on one topic, which has several publishers.
+        first; or their messages contradict each other on one topic, which has several publishers.
         """
         sources: dict[int, dict[str, StateSource]] = {}
         found: dict[str, tuple[str, int, StateSource]] = {}
+        lists = Counter(each.source for each in self._effects.values() if each.counts.messages)
         for effect in self._effects.values():
-            source, dofs = effect.source, effect.selection.dofs.tolist()
-            effect.period_count = effect.period_count + 1 if effect.message_count else 0
-            for dof in dofs if effect.period_count > 1 else ():
-                sources.setdefault(dof, {})[source.name] = source
-            if dofs and effect.older_count >= _LEAST_OLDER:
+            source, dofs, counts = effect.source, effect.selection.dofs.tolist(), effect.counts
+            if dofs and counts.have_several_publishers:
                 nodes = source.publishers()
-                if len(nodes) > 1:
+                # Values alone prove little, so each list of names may have its own publisher.
+                if len(nodes) > (lists[source] if counts.number is None else 1):
                     found[source.name] = f', among {names_in_line(nodes)}', dofs[0], source
-            effect.message_count = effect.older_count = 0
+            counts.end_period()
+            for dof in dofs if counts.periods > 1 else ():
+                sources.setdefault(dof, {})[source.name] = source
         for dof, by_name in sources.items():
             if len(by_name) > 1:
                 found.setdefault(' and '.join(sorted(by_name)), ('', dof, by_name.popitem()[1]))

@@ -23,9 +23,6 @@ from sdf_pose_bridge.ros.cdr import NANOSECONDS
 
 _FOREVER = -1
 
-NO_NUMBER = 2**64 - 1
-"""Stands for the number of a message if the middleware does not number messages."""
-
 
 class NoExecutor(CallbackGroup):
     """The group of subscriptions for which no executor waits."""
@@ -95,12 +92,12 @@ class WaitSet:
         self._subscriptions = subscriptions
 
 
-def take_message(subscription: Subscription) -> tuple[bytes, int] | None:
+def take_message(subscription: Subscription) -> tuple[bytes, int | None] | None:
     """
     Take a message that a subscription for serialized messages has.
 
-    :return: the message, and its number, which goes up for each publisher, or :data:`NO_NUMBER`;
-        None if no message waits.
+    :return: the message, and its number, which goes up for each publisher, or None if the
+        middleware does not number messages; None if no message waits.
     """
     with subscription.handle:
         taken = subscription.handle.take_message(subscription.msg_type, True)

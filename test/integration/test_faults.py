@@ -34,6 +34,7 @@ from deadline import DEADLINE_S
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import Point, Pose, PoseStamped
 from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState
 from sizes import size
 from slow_file import SlowFile
 from std_srvs.srv import Trigger
@@ -281,6 +282,49 @@ def test_a_publish_that_fails_after_the_swap_of_scenes_ends_the_bridge(
         bridge.end()
     assert 'sdf_pose_bridge: thread "loader" has failed, so the node ends' in bridge.lines
     assert not [line for line in bridge.lines if 'is rejected' in line]
+
+
+WITH_DEFECT = """
+import sys
+from sdf_pose_bridge.ros.scene_reader import SceneReader
+reader = SceneReader()
+from sdf_pose_bridge.ros import state_topic
+from sdf_pose_bridge.ros.process import run
+
+def joint_state_from_bytes(*_):
+    raise TypeError('a defect')
+
+state_topic.joint_state_from_bytes = joint_state_from_bytes
+sys.exit(run(sys.argv, 'bridge', reader))
+"""
+"""The node, which cannot read any JointState."""
+
+DEFECT = 'internal error in messages of /joint_states: a defect'
+ARM = """<sdf version="1.11"><model name="arm"><link name="base"/><link name="upper"/>
+<joint name="turn" type="revolute"><parent>base</parent><child>upper</child>
+  <axis><xyz>0 0 1</xyz></axis></joint></model></sdf>"""
+
+
+def test_a_bridge_that_can_process_no_message_says_so_and_ends(
+        ros_domain, make_node, file, listener):
+    file.write_text(ARM, encoding='utf-8')
+    senders = [
+        make_node(name).create_publisher(JointState, 'joint_states', 10)
+        for name in ('arm', 'gripper')]
+    listener.node.create_timer(0.1, lambda: [each.publish(JointState()) for each in senders])
+    monitor = Monitor(listener)
+    bridge = LoggedProcess([
+        sys.executable, '-c', WITH_DEFECT, '--ros-args', '-p', f'sdf_file:={file}',
+        '-p', 'use_joint_states:=true'])
+    try:
+        monitor.wait_for(DiagnosticStatus.ERROR)
+        assert monitor.status.message == DEFECT
+        listener.wait(lambda: not bridge.is_running, lambda: 'the end of the bridge')
+        assert bridge.wait_for_end() == 1
+    finally:
+        bridge.end()
+    assert 'sdf_pose_bridge: thread "joint states" has failed, so the node ends' in bridge.lines
+    assert sum('internal error in' in line for line in bridge.lines) == 1
 
 
 # The process that reads files

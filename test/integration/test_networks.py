@@ -17,9 +17,10 @@ from ament_index_python.packages import get_package_share_directory
 from bridge_process import LoggedProcess, STARTED
 from changes import replace, world
 from command_line import executable_of_workspace
+from ros_domain import needs_fast_dds
 from sizes import size
 
-from sdf_pose_bridge.ros.middleware import FAST_DDS_3, PROFILES
+from sdf_pose_bridge.ros.middleware import PROFILES
 
 ADDRESSES = {'a': '10.211.7.1', 'b': '10.211.7.2'}
 LEASE = '<leaseDuration><sec>3</sec></leaseDuration>'
@@ -147,10 +148,11 @@ def start_listener_on(start_on):
     return start
 
 
+@needs_fast_dds
 def test_a_link_that_is_cut_for_longer_than_the_lease_and_restored(
         hosts, start_bridge_on, start_listener_on, file, tmp_path, monkeypatch):
     share = get_package_share_directory('sdf_pose_bridge')
-    profile = PROFILES[os.environ['ROS_DISTRO']]
+    (profile,) = [each for each in PROFILES if os.environ['ROS_DISTRO'] in each.distros]
     text = Path(share, profile.file).read_text(encoding='utf-8')
     short = tmp_path / 'profile.xml'
     short.write_text(text.replace('<leaseAnnouncement>', f'{LEASE}<leaseAnnouncement>'))
@@ -193,12 +195,13 @@ def test_many_frames_arrive_whole_where_packets_are_lost(
     listener.wait_for_line('all transforms')
 
 
+@needs_fast_dds
 def test_a_discovery_server_leads_to_everything(
         start_on, start_bridge_on, start_listener_on, monkeypatch):
     if shutil.which('fast-discovery-server') is None:
         pytest.skip('the discovery server of Fast DDS is not installed')
     # What "fastdds discovery" of Fast DDS 3 calls for a server.
-    command = ['42'] if PROFILES[os.environ['ROS_DISTRO']] is FAST_DDS_3 else []
+    command = [] if os.environ['ROS_DISTRO'] in PROFILES[0].distros else ['42']
     start_on(
         'a', 'fast-discovery-server', *command, '-i', '0', '-l', ADDRESSES['a'], '-p', '11811')
     monkeypatch.setenv('ROS_DISCOVERY_SERVER', f'{ADDRESSES["a"]}:11811')

@@ -9,12 +9,14 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from sdf_pose_bridge.ros.middleware import FAST_DDS_2, FAST_DDS_3, PROFILES, use_profile
+from sdf_pose_bridge.ros import middleware
+from sdf_pose_bridge.ros.middleware import Profile, PROFILES, use_profile
 
 ROOT = Path(__file__).resolve().parents[2]
 JAZZY = {'ROS_DISTRO': 'jazzy'}
-BOTH = pytest.mark.parametrize('distro', PROFILES)
-OLD, NEW = FAST_DDS_2.variable, FAST_DDS_3.variable
+BY_DISTRO = {distro: profile for profile in PROFILES for distro in profile.distros}
+BOTH = pytest.mark.parametrize('distro', BY_DISTRO)
+OLD, NEW = (profile.variable for profile in PROFILES)
 
 
 @BOTH
@@ -28,13 +30,13 @@ OLD, NEW = FAST_DDS_2.variable, FAST_DDS_3.variable
 def test_a_choice_of_the_user_is_left_alone(distro, chosen, reason):
     environment = {'ROS_DISTRO': distro, **chosen}
     before = dict(environment)
-    assert use_profile(environment).endswith(f'is not used: {reason}')
+    assert use_profile(environment).endswith(f'is used: {reason}')
     assert environment == before
 
 
 @BOTH
 def test_profiles_in_the_working_directory_are_left_alone(tmp_path, monkeypatch, distro):
-    local_file = PROFILES[distro].local_file
+    local_file = BY_DISTRO[distro].local_file
     (tmp_path / local_file).touch()
     monkeypatch.chdir(tmp_path)
     environment = {'ROS_DISTRO': distro}
@@ -59,9 +61,9 @@ def test_with_fast_dds_and_no_other_choice_it_is_used(tmp_path, monkeypatch, dis
     monkeypatch.chdir(tmp_path)
     environment = {'ROS_DISTRO': distro, **chosen}
     sentence = use_profile(environment)
-    variable = PROFILES[distro].variable
+    variable = BY_DISTRO[distro].variable
     profile = Path(environment[variable])
-    assert profile.parts[-2:] == Path(PROFILES[distro].file).parts
+    assert profile.parts[-2:] == Path(BY_DISTRO[distro].file).parts
     assert profile.is_file()
     assert str(profile) in sentence
     assert f'set {variable} to use your own' in sentence
@@ -69,13 +71,23 @@ def test_with_fast_dds_and_no_other_choice_it_is_used(tmp_path, monkeypatch, dis
 
 @BOTH
 def test_the_profile_is_the_default_of_participants(distro):
-    profiles = ET.parse(ROOT / PROFILES[distro].file).getroot()
+    profiles = ET.parse(ROOT / BY_DISTRO[distro].file).getroot()
     (participant,) = profiles
     assert participant.get('is_default_profile') == 'true'
 
 
 @BOTH
 def test_the_thread_that_sends_announcements_sleeps_long(distro):
-    root = ET.parse(ROOT / PROFILES[distro].file).getroot()
+    root = ET.parse(ROOT / BY_DISTRO[distro].file).getroot()
     (period,) = [*root.findall('.//{*}periodMillisecs'), *root.findall('.//{*}period_ms')]
     assert int(period.text) >= 1000  # with 1 ms an idle node takes 4 % of a core
+
+
+def test_a_profile_of_another_middleware_is_one_line(monkeypatch):
+    cyclone = Profile(
+        ('rmw_cyclonedds_cpp',), ('jazzy',), 'config/c.xml', 'CYCLONEDDS_URI', 'c.xml')
+    monkeypatch.setattr(middleware, 'PROFILES', (*PROFILES, cyclone))
+    environment = {'RMW_IMPLEMENTATION': 'rmw_cyclonedds_cpp', **JAZZY, OLD: 'mine.xml'}
+    assert use_profile(environment).endswith('set CYCLONEDDS_URI to use your own')
+    assert environment['CYCLONEDDS_URI'].endswith('config/c.xml')
+    assert f'{OLD} is set' in use_profile({**JAZZY, OLD: 'mine.xml'})

@@ -18,7 +18,6 @@ from sdf_pose_bridge.ros.cdr import LONGEST_READ_S, StampedPose
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.ros.state_messages import Effects, MOST_BYTES, StateSource
-from sdf_pose_bridge.ros.wait_set import NO_NUMBER
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
@@ -220,7 +219,7 @@ def test_publishers_of_one_model_on_one_topic_are_reported(look):
 @pytest.mark.parametrize('periods', [
     [BOTH[:1], BOTH, BOTH[1:]],
     [[('alone', number, 'a') for _, number, _ in TURNS]],
-    [[('poses', NO_NUMBER, 'a')] * 6] * 2,
+    [[('poses', None, 'a')] * 6] * 2,
     [[('poses', number, 'a') for number in (7, 8, 1, 2, 3)]] * 2,
     [[(*each, ('a', 'a::b')[row % 2]) for row, (*each, _) in enumerate(TURNS)]],
 ], ids=['replaced', 'one publisher', 'no numbers', 'restarted', 'different models'])

@@ -1,0 +1,72 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The period in which moved transforms wait, so that they are published at a highest rate.
+
+A message is published at once and begins a period, which is the same for all
+topics. Later ones wait in the subscriptions for its end. Then the newest of them are published in
+one message, and another period begins if there are any. The first message of a silent topic is
+published at once, unless all topics are silent, as when many robots start together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+import math
+from typing import Generic, Protocol, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+NO_ROWS: NDArray[np.intp] = np.array([], np.intp)
+
+
+class _Source(Protocol):
+    last_ns: int
+
+
+_AnySource = TypeVar('_AnySource', bound=_Source)
+
+
+class Period(Generic[_AnySource]):
+    """A period, or the time until the next one begins."""
+
+    def __init__(self) -> None:
+        self.ends_ns = math.inf
+        """Time of the node in ns at which it ends; infinity if there is none."""
+        self.awaited: Sequence[_AnySource] = ()
+        """The sources whose messages do not wait for its end."""
+        self._rows = NO_ROWS
+
+    @property
+    def has_begun(self) -> bool:
+        """Whether there is a period."""
+        return self.ends_ns < math.inf
+
+    def begin(self, ends_ns: float, awaited: Sequence[_AnySource]) -> None:
+        """Begin a period after a publication."""
+        self.ends_ns, self.awaited = ends_ns, awaited
+
+    def add(self, rows: NDArray[np.intp]) -> None:
+        """Have transforms wait for the end."""
+        self._rows = union([self._rows, rows])
+
+    def publish_early(self, rows: NDArray[np.intp], now_ns: int) -> None:
+        """Note transforms that are published before the end, and the sources that moved them."""
+        self._rows = np.setdiff1d(self._rows, rows)
+        self.awaited = [each for each in self.awaited if each.last_ns < now_ns]
+
+    def forget(self) -> None:
+        """Let no transforms wait."""
+        self._rows = NO_ROWS
+
+    def end(self, sources: Sequence[_AnySource]) -> NDArray[np.intp]:
+        """End the period, and await all sources; return the transforms that have waited."""
+        rows, self._rows = self._rows, NO_ROWS
+        self.begin(math.inf, sources)
+        return rows
+
+
+def union(parts: Sequence[NDArray[np.intp]]) -> NDArray[np.intp]:
+    """Return the rows of all parts, most often of one, in ascending order."""
+    return parts[0] if len(parts) == 1 else np.unique(np.concatenate([NO_ROWS, *parts]))
