@@ -85,8 +85,8 @@ def line_from_text(text: object) -> str:
 
 def text_about_defect(place: str) -> str:
     """Return the exception that is being handled; its traceback is indented below a line."""
-    lines = traceback.format_exc().splitlines()[-MOST_PROBLEMS:]
-    return '\n    '.join([f'internal error in {place}:', *map(line_from_text, lines)])
+    lines = [line_from_text(each) for each in traceback.format_exc().splitlines()[-MOST_PROBLEMS:]]
+    return '\n    '.join([f'internal error in {place}: {lines[-1]}', *lines])
 
 
 def lines_from_error(error: Exception) -> list[str]:
