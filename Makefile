@@ -3,7 +3,7 @@
 
 SHELL := bash
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test_core test_long run lint bench differential fuzz growth soak licenses audit docs pictures \
+.PHONY: help setup demo test test_core test_long drake run lint bench differential fuzz growth soak licenses audit docs pictures \
   coverage wheel_check release_check release clean
 
 # The distribution of ROS 2, versions of other packages, a folder with another rclpy, and another
@@ -37,6 +37,7 @@ help:
 	@echo 'make test           all tests; ARGS="-k name" hands arguments to pytest'
 	@echo 'make test_core      the tests that need no ROS, in half a minute'
 	@echo 'make test_long      all tests, some with many more calls, frames, rotations or random examples'
+	@echo 'make drake          Drake, for a test with a real simulator, which is skipped without it'
 	@echo 'make run FILE=...   the node on an SDFormat file; ARGS="-p name:=value" sets parameters'
 	@echo 'make coverage       lines and branches that all tests run, with those of processes'
 	@echo 'make lint           ruff, mypy, import-linter and codespell'
@@ -79,7 +80,13 @@ test_core: setup
 
 # One after the other, as each of them loads the machine.
 test_long: setup
+	@$(MAKE) --no-print-directory drake || echo 'The test with Drake is skipped.'
 	@. underlay/setup.bash && LONG=1 exec python -m pytest $(ARGS)
+
+# A simulator for one test, in an environment of its own, as its packages have other versions.
+drake: setup
+	@. underlay/setup.bash && python -m venv $$VIRTUAL_ENV/drake \
+	  && PYTHONPATH= $$VIRTUAL_ENV/drake/bin/python -m pip install --quiet --only-binary :all: drake==1.51.0
 
 # PWD is the caller's directory, also with make -C.
 run: export CALLER := $(PWD)

@@ -45,14 +45,16 @@ INSTALL = ROOT / f'install{SUFFIX}'
 COLCON_LOG = ROOT / f'log{SUFFIX}'
 LOG = UNDERLAY / 'make_underlay.log'
 # The packages that ROS 2 has and PyPI has not, of which the folders here have the needed types;
-# one type of each that contains all others, and its hash in ROS 2.
+# the types of each that contain all others, and their hashes in ROS 2.
 MISSING_PACKAGES = {
-    'tf2_msgs': (
-        'msg/TFMessage',
-        'RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087'),
-    'simulation_interfaces': (
-        'srv/GetEntitiesStates',
-        'RIHS01_0a76170d0c1c90e1eaf805cfab78ea801d1f82df309a28c1f0fae4b570f19754'),
+    'tf2_msgs': {
+        'msg/TFMessage':
+            'RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087'},
+    'simulation_interfaces': {
+        'srv/GetEntities':
+            'RIHS01_cb90004c48cd50f37732fb008e22c34c261dd680a723bf0f85d8437ea4498bf7',
+        'srv/GetEntitiesStates':
+            'RIHS01_0a76170d0c1c90e1eaf805cfab78ea801d1f82df309a28c1f0fae4b570f19754'},
 }
 BRIDGE = 'sdf_pose_bridge'
 COMMAND_LINE = 'sdf_pose'
@@ -277,16 +279,16 @@ class Underlay:
         self._colcon(
             work / 'log', work / 'build', UNDERLAY, '--merge-install',
             '--base-paths', str(HERE / name))
-        type_, expected = MISSING_PACKAGES[name]
-        description = json.loads((UNDERLAY / f'share/{name}/{type_}.json').read_text())
-        hashes = {
-            entry['type_name']: entry['hash_string'] for entry in description['type_hashes']}
-        found = hashes[f'{name}/{type_}']
-        if found != expected:
-            msg = (
-                f'{name}/{type_} was built with the type hash {found}, which no other ROS 2 '
-                f'understands; restore underlay/{name}.')
-            raise RefusalError(msg)
+        for type_, expected in MISSING_PACKAGES[name].items():
+            description = json.loads((UNDERLAY / f'share/{name}/{type_}.json').read_text())
+            hashes = {
+                entry['type_name']: entry['hash_string'] for entry in description['type_hashes']}
+            found = hashes[f'{name}/{type_}']
+            if found != expected:
+                msg = (
+                    f'{name}/{type_} was built with the type hash {found}, which no other ROS 2 '
+                    f'understands; restore underlay/{name}.')
+                raise RefusalError(msg)
 
     def _build_interfaces(self) -> None:
         # An increment would keep the code of a service that is no longer there.

@@ -97,7 +97,7 @@ class JointStates:
     ) -> None:
         self._node = node
         self._logger = node.get_logger()
-        self._sources = result_from_executor(
+        self.sources = result_from_executor(
             node, lambda: StateSources(node, self._follow_sources, self._wake))
         self._wait_set = WaitSet(node.context)
         self._target = self._next_target = _Target(frames, lookup, (), settings)
@@ -131,7 +131,7 @@ class JointStates:
         When this returns, the thread publishes nothing of the frames before.
         """
         target = _Target(frames, lookup, (), settings)
-        unwanted = self._sources.follow(topics, settings, frames.positions.free_models)
+        unwanted = self.sources.follow(topics, settings, frames.positions)
         result_from_executor(self._node, lambda: self._follow_sources(unwanted, target))
         self.wait()
 
@@ -157,7 +157,7 @@ class JointStates:
         self._has_to_end = True
         self._wake()
         self._thread.join()
-        self._sources.end()
+        self.sources.end()
 
     @property
     def unreported(self) -> Unreported:
@@ -166,7 +166,7 @@ class JointStates:
         positions = target.frames.positions
         joints, models = ([], []) if self._end_grace in self._due else positions.unreported()
         topics = [
-            topic.name for topic in self._sources.joint_state_topics
+            topic.name for topic in self.sources.joint_state_topics
             if not positions.unknown(joints[:1], topic.model)] if joints else []
         return Unreported(
             len(joints), (*joints, '')[0], topics, models,
@@ -176,8 +176,8 @@ class JointStates:
         self, unwanted: Sequence[StateTopic], target: _Target | None = None,
     ) -> None:
         """Follow all sources, and destroy topics then; the executor alone calls this."""
-        self._next_target = (target or self._next_target)._replace(sources=self._sources.sources)
-        self._call(lambda: self._sources.close(unwanted))
+        self._next_target = (target or self._next_target)._replace(sources=self.sources.sources)
+        self._call(lambda: self.sources.close(unwanted))
 
     def _call(self, function: Callable[[], object]) -> None:
         """Have the thread call a function when all messages so far are processed."""
@@ -341,7 +341,7 @@ class JointStates:
         rows = self._effects.rows(effect)
         if len(rows) and not self._has_moved:
             self._has_moved = True
-            count = self._sources.wanted_count
+            count = self.sources.wanted_count
             self._logger.info(
                 f'following {source.name}' if count == 1 else
                 f'following {count} sources; the first message is on {source.name}')

@@ -61,6 +61,9 @@ LOOKING_PERIOD_S = 0.25
 LARGEST_SHARE = 0.001
 """Largest share of a core for looking at them; if that takes long, the period gets longer."""
 
+ENTITIES_PERIOD_S = 1.0
+"""Shortest period in s of a load because of entities that only the simulator has."""
+
 LONGEST_WAIT_S = 0.1
 """Longest time in s for which a call in another process is awaited at once."""
 
@@ -91,6 +94,7 @@ class SdfPoseBridge:
         self._settings = settings
         self._loaded = loaded
         self._reader = reader
+        self._entities: tuple[str, ...] = ()
         self._joint_states: JointStates | None = None
         self._diagnostics = Diagnostics(node, self._unreported)
         self._others = OtherPublishers(node)
@@ -103,6 +107,7 @@ class SdfPoseBridge:
         self._looking = Periodic(self._look_at_files, LOOKING_PERIOD_S)
         self._looking_for_others = Periodic(
             lambda: self._others.look(self._frames), OTHERS_PERIOD_S)
+        self._following_entities = Periodic(self._follow_entities, ENTITIES_PERIOD_S)
         self._publish(loaded, self._frames_from_scene(loaded, settings))
         result_from_executor(node, lambda: self._start_services(parameter_services))
         self._report_success()
@@ -202,7 +207,8 @@ class SdfPoseBridge:
     def _do_what_is_due(self) -> float:
         """Return the longest time in s until this has to be called again."""
         return min(
-            self._publish_what_is_due(), self._looking.call_if_due(), self._visuals.go_on())
+            self._publish_what_is_due(), self._looking.call_if_due(),
+            self._following_entities.call_if_due(), self._visuals.go_on())
 
     def _publish_what_is_due(self) -> float:
         """Do what is due also during a load; return the time in s until there is more."""
@@ -220,6 +226,17 @@ class SdfPoseBridge:
             LOOKING_PERIOD_S, (time.thread_time() - begin) / LARGEST_SHARE)
         self._report_failure(
             self._follower.failure_of_period(self._reload() if has_to_read else None))
+
+    def _follow_entities(self) -> None:
+        """Load the scene with frames of the entities that are in the simulator alone."""
+        simulator = self._joint_states and self._joint_states.sources.simulator
+        others = simulator.others if simulator and self._settings.simulator_others else ()
+        if others != self._entities:
+            begin = time.monotonic()
+            self._entities = others
+            self._report_failure(self._follower.unreported(self._reload()))
+            self._following_entities.period_s = max(
+                ENTITIES_PERIOD_S, 10.0 * (time.monotonic() - begin))
 
     def _publish_again(self) -> None:
         begin = time.perf_counter()
@@ -246,8 +263,9 @@ class SdfPoseBridge:
         return []
 
     def _load(self, settings: Settings) -> LoadedScene:
-        loaded: LoadedScene = self._result(
-            settings.load_request, loaded_scene, settings.load_request)
+        options = settings.tf_options._replace(others=self._entities)
+        request = settings.load_request._replace(tf_options=options)
+        loaded: LoadedScene = self._result(request, loaded_scene, request)
         return loaded
 
     def _result(

@@ -21,10 +21,12 @@ from sdf_pose_bridge.ros.setting_rules import (
     anchors_setting,
     AUTO_KINDS,
     directories_setting,
+    entity_setting,
     HIGHEST_FREQUENCY,
     HIGHEST_RATE,
     kinds_setting,
     LOWEST_RATE,
+    MODEL_FIELD,
     model_name_setting,
     optional_topic_patterns_setting,
     path_setting,
@@ -288,8 +290,16 @@ class Settings:
         '',
         'The node of a simulator that is asked for the poses of models, by its service '
         'get_entities_states of the package simulation_interfaces.',
-        'the name of a node, such as /gzserver; none if empty',
+        'the name of a node, such as /gzserver, or of its service, or /; none if empty',
         simulator_setting,
+    )
+    simulator_entity = Declaration(
+        MODEL_FIELD, 'The name in the simulator of the model that is {model} in the file.',
+        'the name of an entity, such as /World/{model}', entity_setting, needs_load=False,
+    )
+    simulator_others = _switch(
+        False, 'Publishes frames of entities of the simulator that the file does not have.',
+        needs_load=False,
     )
     simulator_rate = _rate(
         'Most calls of the simulator in a second; 0.0 for none.', 'for none', HIGHEST_RATE,

@@ -29,6 +29,9 @@ AUTO_KINDS = 'auto'
 MODEL_FIELD, WORLD_FIELD = '{model}', '{world}'
 """Placeholders for a model and for the world in names of topics."""
 
+STATES_SERVICE = 'get_entities_states'
+"""The name of the service of simulators, in the package simulation_interfaces."""
+
 LOWEST_RATE = 0.001
 """The lowest rate in Hz, except 0.0."""
 
@@ -116,11 +119,21 @@ def optional_topic_patterns_setting(values: Sequence[str]) -> tuple[str, ...]:
 
 
 def simulator_setting(value: str) -> str:
-    """Reject texts that are no name of a node, which precedes the name of a service."""
+    """Return the name of the service by its name, or by that of its node; reject other texts."""
     _check_length(value, MOST_CHARACTERS)
-    if value:
-        _check_ros_name(value, value, 'the name of a node, such as /gzserver')
-    return value.rstrip('/')
+    if not value:
+        return ''
+    name = value if value.endswith(f'/{STATES_SERVICE}') else (
+        f'{value.removesuffix("/")}/{STATES_SERVICE}')
+    _check_ros_name(value, name, 'the name of a node or of its service, such as /gzserver, or /')
+    return name
+
+
+def entity_setting(value: str) -> str:
+    """Reject texts that are no name of an entity."""
+    if not value:
+        raise refusal(value, f'the name of an entity, such as /World/{MODEL_FIELD}')
+    return _name_setting(value, MOST_CHARACTERS)
 
 
 def model_name_setting(value: str) -> str:

@@ -227,11 +227,11 @@ class Effects:
         self._roots = ('', tree.root_frame, tree.world)
         count, scoped_names = len(motion.dofs), frames.positions.free_models
         ids = dict(zip(tree.elements.tolist(), tree.frame_ids, strict=True))
-        self.models = {
+        self.models = frames.positions.others | {
             each: dof for dof, scoped_name in enumerate(scoped_names, count)
             for name in [motion.names[dof]]
             for each in (name, scoped_name, ids.get(motion.elements[dof], name))}
-        """The degrees of freedom of free models, by their names and by their frame ids."""
+        """The degrees of freedom of free models by their names and frame ids, and of others."""
         self.only_model = count if len(scoped_names) == 1 else None
         """The degree of freedom of the only free model; None if there is not exactly one."""
         self.last: dict[StateSource, Effect] = {}
@@ -265,6 +265,12 @@ class Effects:
             found = self._effects[source, dofs] = Effect(
                 source, self._positions.selection_of_models(dofs))
         return found
+
+    def dofs_of_others(self, source: StateSource) -> set[int]:
+        """Return the degrees of freedom about which other sources have sent messages."""
+        return {
+            dof for effect in self._effects.values() if effect.source is not source
+            for dof in effect.selection.changed}
 
     def rows(self, effect: Effect) -> NDArray[np.intp]:
         """Return the transforms that a message moves, and those of what is where the file is."""

@@ -17,6 +17,7 @@ from sdf_pose_bridge.ros.simulator import Simulator
 from sdf_pose_bridge.ros.state_messages import StateSource
 from sdf_pose_bridge.ros.state_topic import JOINT_STATE, POSE_TYPES, StateTopic, TopicKey
 from sdf_pose_bridge.ros.topic_names import StateTopics
+from sdf_pose_bridge.tf.joint_positions import JointPositions
 
 SEARCH_PERIOD_S = 1.0
 """Period of the search for publishers of poses, whose type is that of the topic."""
@@ -42,7 +43,7 @@ class StateSources:
         self._changed, self._wake = changed, wake
         self._topics: dict[TopicKey, StateTopic] = {}
         self._wanted = StateTopics({})
-        self._simulator: Simulator | None = None
+        self.simulator: Simulator | None = None
         self._reported: set[tuple[str, ...]] = set()
         self._search = node.create_timer(
             SEARCH_PERIOD_S, self._find_publishers, autostart=False,
@@ -51,7 +52,7 @@ class StateSources:
     @property
     def sources(self) -> tuple[StateSource, ...]:
         """All sources; those with a subscription come first."""
-        return (*self._topics.values(), *([self._simulator] if self._simulator else []))
+        return (*self._topics.values(), *([self.simulator] if self.simulator else []))
 
     @property
     def joint_state_topics(self) -> list[StateTopic]:
@@ -62,15 +63,15 @@ class StateSources:
     def wanted_count(self) -> int:
         """The number of sources that are wanted."""
         wanted = self._wanted
-        return len(wanted.joint_states) + len(wanted.model_poses) + (self._simulator is not None)
+        return len(wanted.joint_states) + len(wanted.model_poses) + (self.simulator is not None)
 
     def follow(
-        self, topics: StateTopics, settings: Settings, models: Sequence[str],
+        self, topics: StateTopics, settings: Settings, positions: JointPositions,
     ) -> list[StateTopic]:
         """
         Change what is wanted.
 
-        :param models: the scoped names of the free models.
+        :param positions: the free models.
         :return: the topics that are no longer wanted, to :meth:`close` when nothing awaits them.
         """
         if topics.warnings != self._wanted.warnings:
@@ -81,7 +82,7 @@ class StateSources:
             if key not in self._topics:
                 # The executor goes on between two of them.
                 result_from_executor(self._node, functools.partial(self._open, key))
-        result_from_executor(self._node, lambda: self._follow_others(settings, models))
+        result_from_executor(self._node, lambda: self._follow_others(settings, positions))
         return unwanted
 
     def close(self, topics: Sequence[StateTopic]) -> None:
@@ -95,8 +96,8 @@ class StateSources:
         self._node.destroy_timer(self._search)
         for topic in self._topics.values():
             self._node.destroy_subscription(topic.subscription)
-        if self._simulator is not None:
-            self._simulator.end()
+        if self.simulator is not None:
+            self.simulator.end()
 
     def _want(self, topics: StateTopics) -> list[StateTopic]:
         self._wanted = topics
@@ -105,20 +106,21 @@ class StateSources:
             if (topics.joint_states if key.type_name == JOINT_STATE else topics.model_poses).get(
                 key.name) != key.model]
 
-    def _follow_others(self, settings: Settings, models: Sequence[str]) -> None:
+    def _follow_others(self, settings: Settings, positions: JointPositions) -> None:
         """Follow topics of poses, and the simulator."""
         self._search.cancel()
         if self._wanted.model_poses:
             self._search.reset()
             self._find_publishers()
-        current, wanted = self._simulator, settings.simulator if models else ''
-        if current is not None and current.node_name != wanted:
+        current = self.simulator
+        wanted = settings.simulator if positions.free_models or settings.simulator_others else ''
+        if current is not None and current.given_name != wanted:
             current.end()
-            self._simulator = current = None
+            self.simulator = current = None
         if wanted and current is None:
-            self._simulator = current = Simulator(self._node, wanted, self._wake)
+            self.simulator = current = Simulator(self._node, wanted, self._wake)
         if current is not None:
-            current.follow(models, settings.simulator_rate)
+            current.follow(positions, settings)
 
     def _open(self, key: TopicKey) -> None:
         try:

@@ -179,7 +179,8 @@ def state_topics_from_settings(
     model_poses, others = topics_from_patterns(
         'model_pose_topics', settings.model_pose_topics, world, positions.free_models, full_name,
         f'there is no world for {WORLD_FIELD}, or no model that can move')
-    if settings.tf_options.follows_models and not positions.free_models:
+    if settings.tf_options.follows_models and not (
+            positions.free_models or settings.simulator_others):
         others = [(
             'no model follows poses: all models are static, connected to the world by a joint, or '
             'left to others by anchor_models')]

@@ -15,6 +15,7 @@ seven numbers of the pose of each free model in the root: x y z in metres, quate
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 import math
 from typing import NamedTuple
 
@@ -117,10 +118,12 @@ class JointMotion:
     Joints that close a loop move nothing, and nothing moves a link of a static model.
 
     :param frame_names: the part of a scoped name that the name of a joint contains.
+    :param others: names of bodies without parts that are not in the scene, and move freely, too.
     """
 
     def __init__(
         self, scene: Scene, tf_parents: TfParents, frame_names: FrameNames = FrameNames.AUTO,
+        others: Sequence[str] = (),
     ) -> None:
         joints = np.array([joint.element for joint in tf_parents.joints.values()], np.int32)
         names = FrameNaming(frame_names).frame_ids_from_scene(scene, joints)
@@ -139,30 +142,33 @@ class JointMotion:
         root. The axis is reversed if the moved body is the parent of the joint."""
         models = list(tf_parents.free_models.values())
         names = FrameNaming(frame_names).frame_ids_from_scene(scene, np.array(models, np.int32))
-        self.names = (*(each.name for each in dofs), *names)
+        self.names = (*(each.name for each in dofs), *names, *others)
         """The name of each degree of freedom in messages: those of joints, then the models that
-        move freely in the root."""
+        move freely in the root, then other bodies."""
         self.elements = (*(each.joint.element for each in dofs), *models)
-        """The joint or the model of each."""
+        """The joint or the model of each, except for other bodies."""
         bodies += tf_parents.free_models
-        self.moved_bodies: Indices = np.array(bodies, np.int32)
+        no_elements = np.zeros(len(others), np.int32)
+        self.moved_bodies: Indices = np.append(np.array(bodies, np.int32), no_elements)
         """The body that each degree of freedom moves: the one at the end of the joint, or the
-        canonical link of the model."""
+        canonical link of the model; 0 for another body."""
         indices = np.arange(len(bodies), dtype=np.int32)
         last_of_elements = np.full(len(scene.kinds), NO_DOF, np.int32)
         # Of several degrees of freedom of a joint, the last one stays.
         last_of_elements[bodies] = indices
         last_of_elements = last_of_elements[
             ends_from_pointers(np.where(last_of_elements != NO_DOF, -1, tf_parents.parents))]
-        self.last_dofs: Indices = np.append(last_of_elements, indices)
+        self.last_dofs: Indices = np.append(
+            last_of_elements, np.arange(len(self.names), dtype=np.int32))
         """For each element the last degree of freedom between the root and it; -1 for none. Then
         each degree of freedom itself, for frames between it and the next one."""
-        self.previous: Indices = np.where(
-            np.diff(self.moved_bodies, prepend=-1), last_of_elements[tf_parents.parents[bodies]],
-            indices - 1)
+        self.previous: Indices = np.append(np.where(
+            np.diff(bodies, prepend=-1), last_of_elements[tf_parents.parents[bodies]],
+            indices - 1), no_elements + NO_DOF)
         """For each degree of freedom the previous one on the path from the root; -1 for none."""
-        poses = scene.poses[list(self.elements)]
-        values = np.zeros((len(bodies), 5))
+        poses = np.concatenate([
+            scene.poses[list(self.elements)], np.tile(Pose(), (len(others), 1))])
+        values = np.zeros((len(poses), 5))
         values[:len(dofs)] = np.reshape(
             [(*each.axis.xyz, each.rad_per_unit, each.m_per_unit) for each in dofs], (-1, 5))
         axes = transformed_points(poses, values[:, :3]) - poses[:, :3]
@@ -170,8 +176,9 @@ class JointMotion:
         self._screws = axes, poses[:, :3], values[:, 3], values[:, 4]
         self.initial_coordinates = np.append(np.zeros(len(dofs)), poses[len(dofs):])
         """The coordinates where the file puts everything."""
-        identities = np.tile(Pose(), (len(bodies), 1))
-        self._displacements = self.motions(identities, indices, identities)
+        identities = np.tile(Pose(), (len(poses), 1))
+        self._displacements = self.motions(
+            identities, np.arange(len(poses), dtype=np.int32), identities)
 
     def coordinates(self, dofs: NDArray[np.integer]) -> NDArray[np.intp]:
         """Return the indices of the coordinates of free models, shape (k, 7)."""

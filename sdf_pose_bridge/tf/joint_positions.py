@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sdf_pose_bridge.errors import JointPositionError, Place, SdfWarning
+from sdf_pose_bridge.geometry.poses import relative_pose
 from sdf_pose_bridge.names import hint_from_names, JOINT_SUFFIX, quoted_names, SEPARATOR
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
@@ -101,6 +102,18 @@ class JointPositions:
         """The name of each degree of freedom."""
         self.free_models = tuple(scene.names[each] for each in motion.elements[len(dofs):])
         """The scoped names of the free models."""
+        self.others = {
+            name: dof for dof, name in enumerate(self.names) if dof >= len(motion.elements)}
+        """The degrees of freedom of bodies that are not in the scene, by their names."""
+        self.all_models = tuple(
+            scene.names[each] for each in np.flatnonzero(scene.kinds == Kind.MODEL).tolist())
+        """The scoped names of all models."""
+        self.nested_models = {
+            scene.names[model]: (
+                scene.names[outer], relative_pose(scene.pose_of(outer), scene.pose_of(model)))
+            for model in motion.elements[len(dofs):]
+            if scene.kinds[outer := scene.parents.item(model)] == Kind.MODEL}
+        """For each free model in a model the name of that, and its pose there in the file."""
         count = len(self.names)
         self._is_fixed = np.zeros(count, np.bool_)
         self._is_fixed[:len(dofs)] = [
@@ -116,7 +129,9 @@ class JointPositions:
         self.reported_count = 0
         """Number of degrees of freedom that :attr:`is_reported` has."""
         self._unreported = unreported
-        top_level_elements = list(map(scene.top_level_element, motion.elements))
+        # Other bodies have no element, and count as parts of the root.
+        top_level_elements = [
+            *map(scene.top_level_element, motion.elements), *[0] * len(self.others)]
         # The top-level models have numbers.
         elements, self._models = np.unique(top_level_elements, return_inverse=True)
         self._stamps_of_models_ns = [NEVER] * len(elements)
@@ -144,7 +159,7 @@ class JointPositions:
         """Whether the position of each is known."""
         if self._unreported is UnreportedJoints.NONE:
             return self.is_reported | self._is_fixed
-        return np.ones(len(self.names), np.bool_)
+        return self.is_reported | (np.arange(len(self.names)) < len(self._motion.elements))
 
     @property
     def is_reported(self) -> NDArray[np.bool_]:

@@ -19,7 +19,7 @@ from sdf_pose_bridge.errors import (
     UnknownFrameError,
 )
 from sdf_pose_bridge.geometry.chains import ends_from_pointers, Indices
-from sdf_pose_bridge.geometry.poses import canonical_relative_poses, PoseArray
+from sdf_pose_bridge.geometry.poses import canonical_relative_poses, Pose, PoseArray
 from sdf_pose_bridge.names import hint_from_names, quoted_names, WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Joint, ReadOnly, Scene
@@ -28,6 +28,7 @@ from sdf_pose_bridge.tf.anchors import AnchorModels, AnchorPatterns, detached_bo
 from sdf_pose_bridge.tf.frame_ids import frame_ids_with_sensors, FrameNames, FrameNaming
 from sdf_pose_bridge.tf.frames import (
     check_frames_of_sensors,
+    Frame,
     Frames,
     frames_at_joints,
     optical_frames_of_cameras,
@@ -67,6 +68,8 @@ class TfOptions(NamedTuple):
     :attr:`AnchorModels.AUTO` means all models."""
     has_joint_links: bool = False
     """Whether the links without mass at joints of URDF are frames too."""
+    others: tuple[str, ...] = ()
+    """Names of bodies without parts that the file does not have, and that messages move."""
 
     @property
     def naming(self) -> FrameNaming:
@@ -187,7 +190,7 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     _warn_of_loops(tf_parents, scene, problems)
     is_moving = options.use_joint_states or options.follows_models
     motion = JointMotion(
-        scene, tf_parents, options.frame_names,
+        scene, tf_parents, options.frame_names, options.others,
     ) if is_moving or options.has_joint_links else None
     if motion is not None and options.has_joint_links:
         frames = frames.with_frames(frames_at_joints(
@@ -204,10 +207,17 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
         # Frames at joints move with the bodies behind them, as joints stay where they are.
         owners = np.append(
             np.arange(len(scene.kinds), dtype=np.int32), motion.moved_bodies)[owners]
-        motion = JointMotion(scene, tf_parents._replace(joints={}), options.frame_names)
-    moving = MovingFrames(
-        motion, frames.poses, frames.parents, owners, reference,
-    ) if motion is not None and is_moving else None
+        motion = JointMotion(
+            scene, tf_parents._replace(joints={}), options.frame_names, options.others)
+    moving = None
+    if motion is not None and is_moving:
+        others = {naming.frame_id_from_name(name): owner for owner, name in enumerate(
+            options.others, len(scene.kinds) + len(motion.elements))}
+        frames = frames.with_frames([
+            Frame(each, others[each], ROOT_IS_PARENT, Pose())
+            for each in sorted(others.keys() - {'', *ids})])
+        owners = np.append(owners, frames.owners[len(owners):])
+        moving = MovingFrames(motion, frames.poses, frames.parents, owners, reference)
     return TfTree(
         root_frame=options.root_frame,
         frame_ids=tuple(frames.ids),

@@ -2,47 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """A bridge that asks a simulator for the poses of models, beside a process that answers."""
 
-import re
-
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 pytest.importorskip('simulation_interfaces', reason='needs simulation_interfaces')
 
-from changes import pose_of, set_parameters
-from simulation_interfaces.msg import EntityState, Result
-from simulation_interfaces.srv import GetEntitiesStates
+from changes import pose_of, reload, set_parameters
+from simulation_interfaces.msg import Result
+from simulator import SIMULATOR, Simulator
 from tracker import Tracker, WORLD
 
 # The bridge may stop asking between a call and its answer.
 pytestmark = pytest.mark.filterwarnings('ignore:failed to send response:RuntimeWarning')
-
-SIMULATOR = '/gzserver'
-
-
-class Simulator:
-    """Answers calls for the states of entities, in another process than the bridge."""
-
-    def __init__(self, tf, result=Result.RESULT_OK, **x_of_entities):
-        self.result, self.requests, self.sec = result, [], 5000
-        self._x_of_entities = x_of_entities
-        tf.listener.node.create_service(
-            GetEntitiesStates, f'{SIMULATOR}/get_entities_states', self._answer)
-
-    def _answer(self, request, response):
-        self.requests.append(request)
-        self.sec += 1
-        response.result.result = self.result
-        response.result.error_message = f'paused\n[FATAL] at {self.sec}'
-        for name, x in self._x_of_entities.items():
-            if re.search(request.filters.filter, name):
-                state = EntityState()
-                state.header.stamp.sec, state.header.frame_id = self.sec, 'world'
-                state.pose.position.x = x
-                response.entities.append(name)
-                response.states.append(state)
-        return response
-
 
 @pytest.fixture(name='file')
 def write_file(tmp_path):
@@ -59,11 +30,65 @@ def test_a_simulator_is_asked_for_the_models_that_can_move(tf):
     found = tf.last['cart/deck']
     assert (found.header.frame_id, found.header.stamp.sec > 5000) == ('map', True)
     assert (found.transform.translation.x, found.transform.translation.z) == (3.0, 0.5)
-    assert simulator.requests[0].filters.filter == '^(cart|cart::crate|arm)$'
+    assert simulator.requests[0].filters.filter == '^(cart|cart::crate|cart/crate|arm)$'
     set_parameters(tf.listener, simulator='')
     count = len(simulator.requests)
     pose_of(tf, 'wall')
     assert len(simulator.requests) <= count + 1
+
+
+def wait_for_line(tf, bridge, text):
+    """Answer calls until the bridge has logged a line."""
+    tf.listener.wait(lambda: any(text in line for line in bridge.lines), lambda: bridge.lines)
+
+
+@pytest.mark.parametrize(('simulator', 'prefix'), [
+    ('/', ''), (f'{SIMULATOR}/get_entities_states', SIMULATOR)])
+def test_names_of_entities_may_be_others(bridge, tf, simulator, prefix):
+    Simulator(tf, prefix=prefix, **{'/World': 0.0, '/World/cart': 3.0, '/World/arm': 4.0})
+    set_parameters(tf.listener, simulator=simulator)
+    wait_for_line(
+        tf, bridge, f'"arm" in the answers of {prefix}/get_entities_states; for "/World/cart", '
+        'set simulator_entity to "/World/{model}"')
+    set_parameters(tf.listener, simulator_entity='/World/{model}')
+    tf.listener.wait(lambda: tf.last.keys() >= {'cart/deck', 'arm/base'}, lambda: tf.last)
+    assert tf.last['cart/deck'].transform.translation.x == 3.0
+
+
+def test_a_nested_model_keeps_its_place_unless_it_has_a_pose(bridge, tf):
+    simulator = Simulator(tf, cart=3.0)
+    set_parameters(tf.listener, simulator=SIMULATOR, model_pose_topics=['/tracker/{model}/pose'])
+    tf.listener.wait(lambda: 'cart/crate/box' in tf.last, lambda: tf.last)
+    assert pose_of(tf, 'cart::crate').x == 3.0
+    wait_for_line(tf, bridge, 'does not give the poses of "cart::crate", which keep their places')
+    tracker = Tracker(tf)
+    tracker.sec = 10 * simulator.sec
+    tracker.move(1.0, 'cart/crate/box', topic='/tracker/cart/crate/pose')
+    count = len(simulator.requests)
+    tf.listener.wait(lambda: len(simulator.requests) > count + 3, lambda: 'calls')
+    simulator.sec = 10 * tracker.sec
+    tf.listener.wait(
+        lambda: tf.last['cart/deck'].header.stamp.sec > simulator.sec - 10, lambda: tf.last)
+    assert pose_of(tf, 'cart::crate').x == pytest.approx(1.0)
+
+
+def test_other_entities_have_frames_while_they_exist(bridge, tf):
+    simulator = Simulator(tf, cart=3.0, wall=5.0, **{'/spare/part': 6.0})
+    set_parameters(tf.listener, simulator=SIMULATOR, simulator_others=True)
+    tf.listener.wait(lambda: 'spare/part' in tf.last, lambda: tf.last)
+    found = tf.last['spare/part']
+    assert (found.header.frame_id, found.transform.translation.x) == ('world', 6.0)
+    assert pose_of(tf, 'spare/part').x == 6.0
+    simulator.entities['ball'] = simulator.entities.pop('/spare/part')
+    tf.listener.wait(lambda: 'ball' in tf.last, lambda: tf.last)
+    wait_for_line(tf, bridge, '1 frame no longer published, which TF listeners keep')
+    tf.last.clear()
+    tf.listener.wait(lambda: tf.last.keys() >= {'ball', 'cart/deck'}, lambda: tf.last)
+    assert not tf.last.keys() & {'wall', 'wall/bricks', 'spare/part'}
+    reload(tf.listener)
+    assert pose_of(tf, 'ball').x == 6.0
+    set_parameters(tf.listener, simulator_others=False)
+    wait_for_line(tf, bridge, 'which TF listeners keep until they are restarted: "ball"')
 
 
 def test_a_simulator_may_start_later_and_be_stopped(bridge, tf):

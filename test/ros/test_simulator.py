@@ -12,19 +12,54 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 pytest.importorskip('simulation_interfaces', reason='needs simulation_interfaces')
 
 from rclpy.service import Service
+from sdf_texts import world_file
+from simulation_interfaces.msg import EntityState, Result
 from simulation_interfaces.srv import GetEntitiesStates
 
 from sdf_pose_bridge.ros import simulator as module
+from sdf_pose_bridge.ros.given_parameters import settings_from_values
 from sdf_pose_bridge.ros.simulator import Simulator
+from sdf_pose_bridge.tf.loaded_scene import LoadRequest
+from sdf_pose_bridge.tf.loading import loaded_scene_from_request
+from sdf_pose_bridge.tf.tree import TfOptions
+
+SERVICE = '/sim/get_entities_states'
+
+
+def follow(simulator, *names, **settings):
+    """Ask for the poses of models a hundred times a second."""
+    text = world_file(''.join(f'<model name="{name}"><link name="l"/></model>' for name in names))
+    request = LoadRequest('', text, tf_options=TfOptions(follows_models=True))
+    simulator.follow(
+        loaded_scene_from_request(request).joint_positions,
+        settings_from_values({'sdf_file': 'a.sdf', 'simulator_rate': 100.0, **settings}))
 
 
 @pytest.fixture(name='simulator')
 def make_simulator(node):
-    """Return a simulator that is asked a hundred times a second, and what wakes the thread."""
-    found = Simulator(node, '/sim', lambda: None)
-    found.follow(['a'], 100.0)
+    found = Simulator(node, SERVICE, lambda: None)
+    follow(found, 'a')
     yield found
     found.end()
+
+
+@pytest.fixture(name='service')
+def make_service(node, make_node):
+    """Starts a service; ``service(names, states)`` returns the requests."""
+    server = make_node('sim')
+    node.executor.add_node(server)
+    requests = []
+
+    def start(names, states):
+        def answer(request, response):
+            requests.append(request)
+            response.result.result = Result.RESULT_OK
+            response.entities, response.states = names, [EntityState()] * states
+            return response
+        server.create_service(GetEntitiesStates, SERVICE, answer)
+        return requests
+
+    return start
 
 
 def spin_until(node, condition):
@@ -33,37 +68,62 @@ def spin_until(node, condition):
 
 def test_without_the_package_a_line_says_what_to_install(node, monkeypatch, capfd):
     monkeypatch.setitem(sys.modules, 'simulation_interfaces.srv', None)
-    simulator = Simulator(node, '/sim', lambda: None)
-    simulator.follow(['a'], 100.0)
+    simulator = Simulator(node, SERVICE, lambda: None)
+    follow(simulator, 'a')
     simulator.end()
     assert not simulator.has_answers
     log = capfd.readouterr().err
     assert log.count('the package simulation_interfaces is not installed; install it') == 1
 
 
-@pytest.mark.parametrize(('names', 'expression'), [
-    (['a'], '^(a)$'), (['a', 'b::c'], '^(a|b::c)$'),
-    (['a.b*', '[x]', 'y-1 ^$', '\\'], r'^(a\.b\*|\[x\]|y-1 \^\$|\\)$'),
+@pytest.mark.parametrize(('names', 'settings', 'expression'), [
+    (['a'], {}, '^(a)$'),
+    (['a', 'b'], {'simulator_entity': '/World/{model}'}, '^(/World/a|/World/b)$'),
+    (['a', 'b'], {'simulator_entity': 'robot'}, '^(robot)$'),
+    (['a'], {'simulator_others': True}, ''),
+    (['a.b*', '[x]', 'y-1 ^$', '\\'], {}, r'^(a\.b\*|\[x\]|y-1 \^\$|\\)$'),
 ])
-def test_names_are_escaped_in_the_expression(simulator, names, expression):
-    simulator.follow(names, 1.0)
+def test_names_are_escaped_in_the_expression(simulator, names, settings, expression):
+    follow(simulator, *names, **settings)
     assert simulator._request.filters.filter == expression
 
 
-def test_one_call_at_a_time_is_under_way(node, simulator, make_node, monkeypatch):
-    requests, answers = [], []
-    server = make_node('sim')
-    node.executor.add_node(server)
+def test_a_call_without_an_answer_is_followed_by_a_second_one(
+        node, simulator, service, monkeypatch):
+    monkeypatch.setattr(module, 'SECOND_CALL_S', 0.1)
     monkeypatch.setattr(Service, 'send_response', lambda *_: None)
-    server.create_service(
-        GetEntitiesStates, '/sim/get_entities_states',
-        lambda request, response: requests.append(request) or response)
-    spin_until(node, lambda: requests)
+    requests = service(['a'], 1)
+    spin_until(node, lambda: len(requests) > 1)
     ends_at = time.monotonic() + 0.3
     spin_until(node, lambda: time.monotonic() > ends_at)
-    assert len(requests) == 1
+    assert len(requests) == 2
     monkeypatch.setattr(module, 'LONGEST_CALL_S', 0.0)
-    simulator._call_ends_at = 0.0
-    spin_until(node, lambda: len(requests) > 1)
-    assert not answers
+    spin_until(node, lambda: len(requests) > 2)
     assert simulator._problem.startswith('no answer in')
+    monkeypatch.undo()
+    spin_until(node, lambda: simulator.has_answers)
+    assert not simulator._problem
+
+
+@pytest.mark.parametrize(('names', 'states', 'line'), [
+    (['a', 'b', 'c'], 1, 'no poses of models from {}: the simulator answers with 3 names and 1'),
+    (['a', 'b'], 2, 'few poses of models from {}: it has 2 entities, which are more than were'),
+])
+def test_a_wrong_number_is_told(node, simulator, service, names, states, line, capfd):
+    requests = service(names, states)
+    spin_until(node, lambda: simulator._problem)
+    assert capfd.readouterr().err.count(line.format(SERVICE)) == 1
+    assert simulator.has_answers == (len(names) == states)
+    if len(names) == states:
+        assert simulator._due > time.monotonic() + 30.0
+        assert len(requests) == 1
+
+
+def test_answers_that_take_long_are_asked_for_less_often(
+        node, simulator, service, monkeypatch, capfd):
+    monkeypatch.setattr(module, 'LARGEST_SHARE', 1e-2)
+    service(['a'], 1)
+    spin_until(node, lambda: len(simulator._costs_s) == module._COSTS)
+    assert simulator._due > time.monotonic()
+    log = capfd.readouterr().err
+    assert log.count('times a second instead of 100, as an answer with 1 pose takes') == 1

@@ -12,12 +12,18 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 from nav_msgs.msg import Odometry
 import rclpy
 from rclpy.context import Context
+from sdf_texts import world_file
 
 from sdf_pose_bridge.ros.given_parameters import settings_from_values
 from sdf_pose_bridge.ros.state_sources import StateSources
 from sdf_pose_bridge.ros.topic_names import StateTopics
+from sdf_pose_bridge.tf.loaded_scene import LoadRequest
+from sdf_pose_bridge.tf.loading import loaded_scene_from_request
+from sdf_pose_bridge.tf.tree import TfOptions
 
 SETTINGS = settings_from_values({'sdf_file': 'a.sdf'})
+POSITIONS = loaded_scene_from_request(
+    LoadRequest('', world_file(''), tf_options=TfOptions(follows_models=True))).joint_positions
 TOPICS = StateTopics({'joint_states': ''}, {'a/pose': 'a', 'b/pose': 'b'})
 
 
@@ -53,7 +59,7 @@ class Sources:
 @pytest.fixture(name='sources')
 def make_sources(node, make_node, beside):
     found = Sources(node, make_node('other'), beside)
-    found.follow(TOPICS, SETTINGS, ['a', 'b'])
+    found.follow(TOPICS, SETTINGS, POSITIONS)
     yield found
     found.sources.end()
 
@@ -108,7 +114,7 @@ def test_other_types_and_several_are_reported_once(
 def test_topics_that_are_no_longer_wanted_are_returned(sources, node):
     sources.publish(PoseStamped)
     sources.wait_for(a='PoseStamped')
-    unwanted = sources.follow(StateTopics({'joint_states': ''}), SETTINGS, ['a', 'b'])
+    unwanted = sources.follow(StateTopics({'joint_states': ''}), SETTINGS, POSITIONS)
     assert [each.name for each in unwanted] == ['/a/pose']
     for each in unwanted:
         node.destroy_subscription(each.subscription)
@@ -117,6 +123,6 @@ def test_topics_that_are_no_longer_wanted_are_returned(sources, node):
 
 def test_warnings_are_repeated_only_if_they_change(sources, capfd):
     for warnings in (('one',), ('one',), ('two',)):
-        sources.follow(TOPICS._replace(warnings=warnings), SETTINGS, [])
+        sources.follow(TOPICS._replace(warnings=warnings), SETTINGS, POSITIONS)
     log = capfd.readouterr().err
     assert (log.count('one'), log.count('two')) == (1, 1)

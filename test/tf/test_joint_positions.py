@@ -8,7 +8,12 @@ from sdf_texts import joint, model_file, world_file
 
 from sdf_pose_bridge.errors import JointPositionError
 from sdf_pose_bridge.scene.loading import load_text
-from sdf_pose_bridge.tf.joint_positions import JointPositions, leading_dofs, scene_at_positions
+from sdf_pose_bridge.tf.joint_positions import (
+    JointPositions,
+    leading_dofs,
+    scene_at_positions,
+    UnreportedJoints,
+)
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 ENDS = '<parent>a</parent><child>b</child>'
@@ -262,10 +267,11 @@ def test_positions_of_one_time_stay_together():
 
 # Free models
 
-def free_positions(*names, **options):
+def free_positions(*names, others=(), content='', **options):
     """Return the coordinates of a world with models, each of which has a joint."""
-    scene = load_text(world_file(''.join(map(model, names))))
-    tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True, follows_models=True))
+    scene = load_text(world_file(''.join(model(name, content) for name in names)))
+    tree = tf_tree_from_scene(
+        scene, TfOptions(use_joint_states=True, follows_models=True, others=others))
     return JointPositions(scene, tree.moving.motion, **options)
 
 
@@ -287,6 +293,24 @@ def test_poses_and_positions_have_coordinates_of_their_own():
     assert positions.values.tolist() == [0, 0.5, *[0] * 6, 1, 2.0, *[0] * 5, 1]
     assert positions.unreported() == (['p/j'], ['p'])
     assert positions.stamps_ns.tolist() == [-1, 5, -1, 5]
+
+
+@pytest.mark.parametrize('unreported', UnreportedJoints)
+def test_other_bodies_are_known_when_they_are_reported(unreported):
+    positions = free_positions('p', others=('x', 'y'), unreported=unreported)
+    assert (positions.names, positions.free_models) == (('p/j', 'p', 'x', 'y'), ('p',))
+    assert positions.is_known.tolist()[2:] == [False, False]
+    place(positions, 3, 2.0)
+    assert positions.is_known.tolist()[2:] == [False, True]
+    assert (x_of(positions, 2), x_of(positions, 3)) == (0.0, 2.0)
+
+
+def test_a_nested_model_has_a_place_in_the_model_around_it():
+    nested = '<model name="n"><pose>1 0 0 0 0 0</pose><link name="l"/></model>'
+    positions = free_positions('p', content=nested)
+    assert positions.all_models == positions.free_models == ('p', 'p::n')
+    outer, place = positions.nested_models['p::n']
+    assert (outer, [*place]) == ('p', [1, 0, 0, 0, 0, 0, 1])
 
 
 @pytest.mark.parametrize('x', [np.nan, np.inf, -1e10])

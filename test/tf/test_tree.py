@@ -366,3 +366,12 @@ def test_one_model_of_a_random_scene_is_a_tree(drawn, data):
         index: frame_id for index, frame_id in scoped_ids(scene, ALL_KINDS).items()
         if f'{scene.names[index]}::'.startswith(f'{name}::')}
     assert_has_poses_of(tree, scene, inside)
+
+
+def test_other_bodies_get_the_frame_ids_that_are_free():
+    tree = tree_of(
+        world_file('<model name="a"><link name="l"/></model>'), follows_models=True,
+        others=('a', '/b::c', '/', 'world', 'b/c', 'x y'))
+    assert tree.frame_ids == ('a', 'a/l', 'b/c', 'x y')
+    assert tree.parent_ids == ('a/l', 'world', 'world', 'world')
+    assert tree.moving.indices.tolist() == [1, 2, 3]
