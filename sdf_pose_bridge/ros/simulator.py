@@ -97,7 +97,7 @@ class Simulator(StateSource):
         """Ask for the poses of the free models, and of other entities if they are wanted."""
         if self._client is None:
             return
-        self._positions, self._settings = positions, settings
+        self._positions, self._settings, self._due = positions, settings, 0.0
         self._models, self._known = (
             {settings.simulator_entity.replace(MODEL_FIELD, name): model
              for model in reversed(models) for name in (model.replace(SEPARATOR, '/'), model)}

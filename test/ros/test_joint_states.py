@@ -516,7 +516,7 @@ def test_the_first_message_of_a_robot_after_a_silence_does_not_wait(two_arms):
 
 def test_too_many_messages_of_one_robot_leave_time_for_another(two_arms):
     arms = two_arms(2.0)
-    topic = next(each for each in arms.states._sources.sources if each.model == 'a')
+    topic = next(each for each in arms.states.sources.sources if each.model == 'a')
     take = topic.take
     # As if messages came faster than they are taken.
     topic.take = lambda *arguments: take(*arguments) or True

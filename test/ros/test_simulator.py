@@ -117,6 +117,8 @@ def test_a_wrong_number_is_told(node, simulator, service, names, states, line, c
     if len(names) == states:
         assert simulator._due > time.monotonic() + 30.0
         assert len(requests) == 1
+        follow(simulator, 'a', 'b')
+        spin_until(node, lambda: len(requests) > 1)
 
 
 def test_answers_that_take_long_are_asked_for_less_often(
