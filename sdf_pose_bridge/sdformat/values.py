@@ -233,8 +233,9 @@ def number_from_word(word: str) -> Sequence[float]:
 
 def number_from_stream(word: str) -> Sequence[float]:
     """Return the number that a C++ stream reads, if it reads all of a text; else none."""
-    match = _STREAM_NUMBER.fullmatch(word)
-    number = math.inf if match is None else float(match[1])
+    # Unlike fullmatch, this takes no longer for many digits before something else.
+    match = _STREAM_NUMBER.match(word)
+    number = math.inf if match is None or match.end() < len(word) else float(match[1])
     return (number,) if math.isfinite(number) else ()
 
 

@@ -278,6 +278,8 @@ FILES: dict[str, Callable[[int], Files]] = {
         '</joint>', '<mimic joint="j0"/></joint>')),
     'links of URDF at one link': lambda n: robot(each(n, URDF_LINK.format('l0'))),
     'errors in URDF': lambda n: robot(each(n, '<joint name="j#" type="x"/>')),
+    'digits before a letter in URDF': lambda n: robot(
+        urdf_chain(1, 'fixed') + f'<origin xyz="{"1" * 10 * n}x 0 0"/>'),
     'cycles of URDF': lambda n: robot(each(n, URDF_LINK.format('s+'))),
     'visuals of lumped links': lambda n: robot(urdf_chain(n // 2, 'fixed').replace(
         f'name="l{n // 2}">', f'name="l{n // 2}">{SPHERE * n}')),

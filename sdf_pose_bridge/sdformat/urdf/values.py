@@ -54,7 +54,6 @@ def numbers_of(xml: XmlElement, rules: Iterable[Item]) -> dict[str, list[float]]
                 msg = f'<{tag}> has no {name}'
                 raise ValueError(msg)
         elif count:
-            # Only blanks separate numbers, and nothing may follow a single one.
             words = [text] if count == 1 else [*filter(None, text.split(' '))]
             numbers = [number for word in words for number in number_from_stream(word)]
             if not len(numbers) == len(words) == count:
