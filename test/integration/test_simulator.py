@@ -73,8 +73,10 @@ def test_a_nested_model_keeps_its_place_unless_it_has_a_pose(bridge, tf):
 
 
 def test_other_entities_have_frames_while_they_exist(bridge, tf):
-    simulator = Simulator(tf, cart=3.0, wall=5.0, **{'/spare/part': 6.0})
-    set_parameters(tf.listener, simulator=SIMULATOR, simulator_others=True)
+    simulator = Simulator(tf, **{'/World/cart': 3.0, '/World/wall': 5.0, '/spare/part': 6.0})
+    set_parameters(
+        tf.listener, simulator=SIMULATOR, simulator_others=True,
+        simulator_entity='/World/{model}')
     tf.listener.wait(lambda: 'spare/part' in tf.last, lambda: tf.last)
     found = tf.last['spare/part']
     assert (found.header.frame_id, found.transform.translation.x) == ('world', 6.0)
@@ -84,7 +86,7 @@ def test_other_entities_have_frames_while_they_exist(bridge, tf):
     wait_for_line(tf, bridge, '1 frame no longer published, which TF listeners keep')
     tf.last.clear()
     tf.listener.wait(lambda: tf.last.keys() >= {'ball', 'cart/deck'}, lambda: tf.last)
-    assert not tf.last.keys() & {'wall', 'wall/bricks', 'spare/part'}
+    assert not tf.last.keys() & {'World/wall', 'World/cart', 'spare/part'}
     reload(tf.listener)
     assert pose_of(tf, 'ball').x == 6.0
     set_parameters(tf.listener, simulator_others=False)
