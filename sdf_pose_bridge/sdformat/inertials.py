@@ -112,7 +112,7 @@ def inertial_from_element(
     :param reads_masses: whether to read one that is not automatic.
     :return: the inertial; None if it is not read, or cannot be computed.
     """
-    is_automatic = boolean_from_text(xml.get('auto', ''))
+    is_automatic = boolean_from_text(attribute_of(xml, 'auto'))
     if not (is_automatic or reads_masses):
         return None
     link = xml.getparent()

@@ -26,10 +26,10 @@ from sdf_pose_bridge.sdformat.poses import (
     PoseFormat,
     PoseTextError,
 )
-from sdf_pose_bridge.sdformat.values import number_from_word, words_of
+from sdf_pose_bridge.sdformat.values import number_from_word
 from sdf_pose_bridge.sdformat.versions import Version, version_from_text
 from sdf_pose_bridge.sdformat.xml_file import START_TAG, xml_from_bytes
-from sdf_pose_bridge.sdformat.xml_tree import text_of, written_tag
+from sdf_pose_bridge.sdformat.xml_tree import text_of, words_of, written_tag
 
 _FIRST_WITH_POSE = Version(1, 4)
 _TEXT_AFTER_COMMENTS = re.compile(rb'(?:\s*<!--.*?-->)*([^<]*)', re.DOTALL)
@@ -150,7 +150,7 @@ class PoseText:
         parent = self._elements[element].getparent()
         assert parent is not None
         own, outer = (
-            line[:len(line) - len(line.lstrip())]
+            line[:len(line) - len(line.lstrip(b' \t'))]
             for each in (element, self._elements.index(parent))
             for line in [self._text[:self._tags[each][0]].rpartition(b'\n')[2]])
         return own.removeprefix(outer) or b'  '

@@ -26,9 +26,8 @@ from sdf_pose_bridge.sdformat.values import (
     is_representable,
     number_from_word,
     plain_numbers_from_text,
-    words_of,
 )
-from sdf_pose_bridge.sdformat.xml_tree import attribute_of, XmlElement
+from sdf_pose_bridge.sdformat.xml_tree import attribute_of, words_of, XmlElement
 
 _SHORTEST_QUATERNION = 1e-9
 """A quaternion with a smaller norm has no meaningful direction."""
@@ -67,7 +66,7 @@ def pose_format_of(xml: XmlElement) -> PoseFormat:
     """
     rotation_format = attribute_of(xml, 'rotation_format')
     pose_format = PoseFormat(
-        rotation_format == 'quat_xyzw', boolean_from_text(xml.get('degrees', '')) is True)
+        rotation_format == 'quat_xyzw', boolean_from_text(attribute_of(xml, 'degrees')) is True)
     if rotation_format not in ('', 'euler_rpy', 'quat_xyzw'):
         msg = f'rotation_format="{rotation_format}" must be euler_rpy or quat_xyzw'
         raise PoseTextError(msg)
@@ -128,8 +127,8 @@ def pose_numbers_from_text(text: str, pose_format: PoseFormat) -> tuple[Sequence
 
 def _numbers_from_words(text: str, pose_format: PoseFormat) -> Sequence[float]:
     layout = 'x y z qx qy qz qw' if pose_format.is_quaternion else 'x y z roll pitch yaw'
-    count = len(layout.split())
-    words = words_of(text) or '0 0 0 0 0 0 1'.split()[:count]
+    count = 7 if pose_format.is_quaternion else 6
+    words = words_of(text) or list('0000001')[:count]
     numbers: list[float] = []
     for word in words[:count]:
         read = number_from_word(word)

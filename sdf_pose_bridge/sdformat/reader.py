@@ -60,7 +60,6 @@ from sdf_pose_bridge.sdformat.xml_tree import (
     text_of,
     value_at,
     value_of,
-    WHITE_SPACE,
     written_tag,
     XmlElement,
 )
@@ -293,15 +292,11 @@ class _Reader:
             if (is_checked and choice is None) or (
                     not rule.required if text is None else rule.is_plain(text)):
                 continue
-            value = '' if text is None else text.strip(WHITE_SPACE)
+            value = attribute_of(xml, name)
             if text is None:
                 msg = f'<{written_tag(xml)}> has no {name}'
                 self._sources.error(AttributeMissingError, xml, msg)
-            elif not text.strip():
-                if rule.required:
-                    msg = f'{name}="{text}" of <{written_tag(xml)}> is empty'
-                    self._sources.error(AttributeInvalidError, xml, msg)
-            elif rule.choice is None:
+            elif rule.choice is None or not value:
                 fault, doubt = judged_value(value, rule)
                 if fault:
                     self._sources.error(AttributeInvalidError, xml, f'{name}="{value}" {fault}')
@@ -367,14 +362,14 @@ def _model_details(xml: XmlElement) -> ModelDetails:
             static = text_of(child)
         elif child.tag in URDF_TAGS:
             urdf.append(etree.tostring(
-                child, encoding='unicode', pretty_print=True, with_tail=False).rstrip())
+                child, encoding='unicode', pretty_print=True, with_tail=False).rstrip('\n'))
     return ModelDetails(
         boolean_from_text(static or '') is True, frame_of_attribute(xml, 'canonical_link'),
         frame_of_attribute(xml, 'placement_frame'), tuple(urdf))
 
 
 def _described_value(xml: XmlElement) -> str:
-    value = shortened(text_of(xml).strip(WHITE_SPACE))
+    value = shortened(text_of(xml))
     return f'"{value}" of <{written_tag(xml)}>' if value else f'<{written_tag(xml)}>'
 
 

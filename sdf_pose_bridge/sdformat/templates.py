@@ -118,7 +118,7 @@ def _values(xml: XmlElement) -> Iterator[tuple[str, str]]:
     for attribute, value in xml.items():
         yield value, f'{attribute}="{shortened(value)}" of <{tag}>'
     text = text_of(xml)
-    yield text, f'"{shortened(text.strip())}" in <{tag}>'
+    yield text, f'"{shortened(text)}" in <{tag}>'
 
 
 def _refuse_xacro(root: XmlElement, path: str, sources: Sources) -> None:

@@ -22,6 +22,7 @@ from sdf_pose_bridge.sdformat.xml_tree import (
     child_at,
     text_of,
     WHITE_SPACE,
+    words_of,
     XmlElement,
 )
 
@@ -36,7 +37,6 @@ _STREAM_NUMBER = re.compile(rf'[{WHITE_SPACE}]*([+-]?{_DECIMAL})')
 """The part that a C++ stream reads; it leaves the rest for the next number."""
 _STREAM_INTEGERS = re.compile(r'([+-]?[0-9]+)(\s+[+-]?[0-9]+|[+-][0-9]+)', re.ASCII)
 """Two integers, as a C++ stream reads them."""
-_WORD = re.compile(f'[^{WHITE_SPACE}]+')
 _PLAIN_NUMBERS = re.compile(
     rf'[0-9+\-.{WHITE_SPACE}]*(?:[eE][+-]?[0-9]{{1,2}}(?![0-9])[0-9+\-.{WHITE_SPACE}]*)*')
 _LONGEST_PLAIN = 200
@@ -48,6 +48,8 @@ _SHORTEST_AXIS = 9.999999974752427e-07
 _SMALLEST_FLOAT, _LARGEST_FLOAT = 2.0 ** -126, (2.0 - 2.0 ** -23) * 2.0 ** 127
 _NOT_ZERO = re.compile(r'[^eE]*[1-9]')
 _BOOLEANS = {'true': True, '1': True, 'false': False, '0': False}
+TRUE_TEXTS = ('true', 'True', 'TRUE', '1')
+"""The true values of the flags that are not read by type: ``merge`` and those of old versions."""
 _INTEGER_RANGES = {
     ValueType.INTEGER: (-2 ** 31, 2 ** 31 - 1),
     # A negative number counts modulo 2 ** 64.
@@ -61,10 +63,10 @@ def boolean_from_text(text: str) -> bool | None:
     """
     Read a boolean.
 
-    :param text: the value, with or without white space around it.
+    :param text: the value, stripped.
     :return: the boolean; None if the text is not ``true``, ``false``, ``1`` or ``0`` in any case.
     """
-    return _BOOLEANS.get(text.strip(WHITE_SPACE).lower())
+    return _BOOLEANS.get(text.lower())
 
 
 def frame_of_attribute(xml: XmlElement, attribute: str) -> str:
@@ -88,20 +90,20 @@ def judged_value(text: str, rule: Item) -> tuple[str, str]:
     """
     Judge the value of an element or an attribute as libsdformat does.
 
-    :param text: the value. If it is not required, the default replaces a blank one.
+    :param text: the value, stripped. If it is not required, the default replaces an empty one.
     :param rule: the rule of the grammar for it, which is not a pose.
     :return: the rule that it breaks, empty if it is valid; and the numbers that were read, empty
         if they agree with the text. In a message, both follow the value.
     """
-    stripped, value_type = text.strip(WHITE_SPACE), rule.value_type
-    if not stripped:
+    value_type = rule.value_type
+    if not text:
         return 'is empty; it must have a value' if rule.required == '!' else '', ''
     if value_type is ValueType.STRING:
         return '', ''
     if rule.choice is not None:
-        return choice_fault(stripped, rule.choice), ''
-    numbers = numbers_from_text(stripped, value_type)
-    if not _is_of_type(stripped, numbers, value_type):
+        return choice_fault(text, rule.choice), ''
+    numbers = numbers_from_text(text, value_type)
+    if not _is_of_type(text, numbers, value_type):
         return f'is not {value_type.description}', ''
     if value_type is ValueType.AXIS and math.hypot(*numbers) <= _SHORTEST_AXIS:
         return 'is not a valid axis: its length is zero', ''
@@ -110,8 +112,8 @@ def judged_value(text: str, rule: Item) -> tuple[str, str]:
         limits = (f'at least {rule.minimum:g}' if rule.maximum == math.inf
                   else f'from {rule.minimum:g} to {rule.maximum:g}')
         return f'must be {limits}', ''
-    is_integer = value_type.is_integer and _C_INTEGER.fullmatch(stripped)
-    return '', '' if is_integer or not numbers else doubt_about_numbers(stripped, numbers)
+    is_integer = value_type.is_integer and _C_INTEGER.fullmatch(text)
+    return '', '' if is_integer or not numbers else doubt_about_numbers(text, numbers)
 
 
 def doubt_about_numbers(text: str, numbers: Sequence[float]) -> str:
@@ -133,11 +135,6 @@ def doubt_about_numbers(text: str, numbers: Sequence[float]) -> str:
         return ''
     shown = ' '.join(repr(number).removesuffix('.0') for number in numbers)
     return f'is read as {shown}, as by Gazebo'
-
-
-def words_of(text: str) -> list[str]:
-    """Split a text at white space, of which SDFormat has less than Python."""
-    return _WORD.findall(text)
 
 
 def is_representable(text: str, number: float) -> bool:
@@ -180,31 +177,32 @@ def numbers_from_text(text: str, value_type: ValueType) -> Sequence[float]:
     """
     Return the numbers of a value.
 
+    :param text: the value, stripped.
     :return: as many numbers as the type has, or three of a color; fewer if the text is not of the
         type.
     """
-    stripped, count = text.strip(WHITE_SPACE), value_type.count
+    count = value_type.count
     if count == 0:
         return ()
     if not value_type.is_integer:
-        numbers = plain_numbers_from_text(stripped)
+        numbers = plain_numbers_from_text(text)
         if len(numbers) == count:
             return numbers
-    boolean = boolean_from_text(stripped) if count == 1 else None
+    boolean = boolean_from_text(text) if count == 1 else None
     if boolean is not None:
         return (float(boolean),)
     if value_type is ValueType.TIME:
-        match = _STREAM_INTEGERS.match(stripped)
+        match = _STREAM_INTEGERS.match(text)
         return [
             number for word in (match.groups() if match else ())
-            for number in _integer(word.strip(), ValueType.INTEGER)]
+            for number in _integer(word.strip(WHITE_SPACE), ValueType.INTEGER)]
     if value_type in _INTEGER_RANGES:
-        return _integer(stripped, value_type)
+        return _integer(text, value_type)
     if value_type in (ValueType.NUMBER, ValueType.FLOAT, ValueType.COLOR):
-        words = [stripped] if count == 1 else words_of(stripped)
+        words = [text] if count == 1 else words_of(text)
         numbers = [number for word in words for number in number_from_word(word)]
         return numbers if len(numbers) == len(words) else ()
-    return _streamed_numbers(stripped, count)
+    return _streamed_numbers(text, count)
 
 
 def plain_numbers_from_text(text: str) -> Sequence[float]:
@@ -212,7 +210,7 @@ def plain_numbers_from_text(text: str) -> Sequence[float]:
     if len(text) >= _LONGEST_PLAIN or not _PLAIN_NUMBERS.fullmatch(text):
         return ()
     try:
-        return [*map(float, text.split())]
+        return [*map(float, words_of(text))]
     except ValueError:
         return ()
 

@@ -18,7 +18,7 @@ from sdf_pose_bridge.errors import ConversionError, Place
 from sdf_pose_bridge.names import MODEL_FRAME, SEPARATOR, WORLD_FRAME
 from sdf_pose_bridge.sdformat.grammar import PARTS_OF_MODEL, REFERENCE_ATTRIBUTES
 from sdf_pose_bridge.sdformat.sources import Sources
-from sdf_pose_bridge.sdformat.values import boolean_from_text
+from sdf_pose_bridge.sdformat.values import TRUE_TEXTS
 from sdf_pose_bridge.sdformat.xml_tree import (
     attribute_of,
     child_elements,
@@ -172,7 +172,7 @@ def _convert_axes(root: XmlElement, version: Version, sources: Sources) -> None:
     for flag in list(root.iter('use_parent_model_frame')):
         axis = flag.getparent()
         if axis is not None and not is_foreign(flag):
-            if boolean_from_text(text_of(flag)):
+            if text_of(flag) in TRUE_TEXTS:
                 axes[axis] = None
             axis.remove(flag)
     for axis in axes:

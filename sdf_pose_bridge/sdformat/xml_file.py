@@ -85,8 +85,6 @@ START_TAG = re.compile(
 _OTHER_PART = re.compile(b'<' + _NO_TAG, re.DOTALL)
 
 _NOT_TAGS_AND_BREAKS = bytes(set(range(256)) - set(b'<>\t\n'))
-_BREAK_IN_TAG = re.compile(rb'<[^/!?<>][^<>\t\n]*[\t\n]')
-"""The beginning of a start tag with a line break or tab, if no value before it contains ">"."""
 
 _NAME_SPACE = re.compile(rb'"[^"]*"|\'[^\']*\'|(?<=\s)(xmlns)(?=[\s:=])')
 """A declaration of a name space in a start tag, as group 1, or a value that may look like one."""
@@ -235,7 +233,7 @@ def _parsed(text: bytes, path: str) -> XmlElement:
             max(map(len, text.split(b'<'))) <= _LONGEST_TEXT):
         raise MemoryError
     if errors:
-        fault = errors[0].message.strip()
+        fault = errors[0].message.rstrip('\n')
         for pattern, replacement in _FAULTS.items():
             fault = re.sub(rf'\A{pattern}\Z', replacement, fault)
         msg = f'this is not well-formed XML: {fault}{hint_about_template(path, text)}'
@@ -299,10 +297,9 @@ def _lines_and_warnings(
 ) -> tuple[dict[XmlElement, int], list[SdfWarning]]:
     """Return lines that libxml2 has not, and warnings about names with a line break or a tab."""
     # Most texts have no such tag, which this finds in a fraction of the time of the search.
-    rest = text.translate(None, _NOT_TAGS_AND_BREAKS)
-    has_break = (b'<\n' in rest or b'<\t' in rest) and _BREAK_IN_TAG.search(text) is not None
+    rest = _OTHER_PART.sub(b'', text).translate(None, _NOT_TAGS_AND_BREAKS)
     # A value may contain ">" before the break.
-    has_break = has_break or rest.count(b'<') != rest.count(b'>')
+    has_break = b'<\n' in rest or b'<\t' in rest or rest.count(b'<') != rest.count(b'>')
     if not has_break and text.count(b'\n') < _LAST_LINE:
         return {}, []
     begins = _begins_of_elements(text)

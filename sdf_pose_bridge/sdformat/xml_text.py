@@ -9,10 +9,10 @@ bytes. libsdformat reads everything as UTF-8.
 TinyXML-2, and so libsdformat, accepts text that is not well-formed XML; it is rewritten here.
 TinyXML-2 knows the five predefined entities and reads any other ``&`` as text. It accepts ``<`` in
 attribute values, ``]]>`` in text, two hyphens in comments, attributes without white space between
-them, white space behind ``<``, bytes that are not UTF-8, and any XML version and encoding. In text
-and comments it accepts characters that XML does not have; they are replaced here. It skips text
-before the outermost element, and everything behind it that is not text alone. It stops at an end
-tag without a start tag. Lines are kept.
+them, white space behind ``<``, bytes that are not UTF-8, and any XML version and encoding. It
+accepts characters that XML does not have; they are replaced here. It skips text before the
+outermost element, and everything behind it that is not text alone. It stops at an end tag without
+a start tag. Lines are kept.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ import sys
 from typing import NamedTuple, TypeAlias
 
 from sdf_pose_bridge.errors import FileReadError, Place
+from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 
 _MARKS = (
     (codecs.BOM_UTF8, 'utf-8'), (codecs.BOM_UTF32_LE, 'utf-32-le'),
@@ -38,17 +39,19 @@ _DECLARATION = re.compile(rb'\s*<\?xml[^>]*?encoding\s*=\s*["\']([A-Za-z0-9._-]+
 _ALLOWED = re.compile(r'utf-(8|16|32)(-[bl]e)?|ascii|iso8859-[0-9]+|cp125[0-9]')
 """Python's names of the accepted encodings."""
 
+_SPACE = f'[{WHITE_SPACE}]*'
 _NAME = r'[^\W\d][\w:.\-]*|:[\w:.\-]*'
-_ATTRIBUTE = re.compile(rf'(\s*)((?:{_NAME})\s*=\s*)("[^"]*"|\'[^\']*\')')
+_ATTRIBUTE = re.compile(
+    rf'({_SPACE})((?:{_NAME}){_SPACE}={_SPACE}(["\']))(.*?)\3', re.DOTALL)
 _TOKEN = re.compile(
     rf'(?P<comment><!--.*?-->)|(?P<verbatim><!\[CDATA\[.*?\]\]>)|(?P<instruction><\?.*?\?>)'
     rf'|(?P<other><!(?!--|\[CDATA\[)[^>]*>)|(?P<text>[^<]+)'
-    rf'|<(?P<space>[ \t-\r]*)(?P<end>/?)(?P<tag>{_NAME})(?![\w:.\-])', re.DOTALL)
+    rf'|<(?P<space>{_SPACE})(?P<end>/?)(?P<tag>{_NAME})(?![\w:.\-])', re.DOTALL)
 """A token, or the beginning of a tag, which attributes and ``_REST_OF_TAG`` follow."""
-_REST_OF_TAG = re.compile(r'\s*(?P<empty>/?)>')
+_REST_OF_TAG = re.compile(rf'{_SPACE}(?P<empty>/?)>')
 _REFERENCE = re.compile(r'&#(?:([0-9]+)|x([0-9a-fA-F]+));')
-_OTHER_SPACE = '\x0b\x0c'
-"""White space that XML does not have."""
+_LAST_READ = 0x1fffff
+"""TinyXML-2 reads references to larger numbers as nothing."""
 _NOT_XML = re.compile('[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]')
 """A character that XML does not have."""
 _REPLACEMENT = '\ufffd'
@@ -68,8 +71,12 @@ class _Replacement(NamedTuple):
 
 _CHARACTERS = _Replacement(
     _NOT_XML, _REPLACEMENT, 'U+{:04X} is no character of XML; it is replaced')
+_ENDS = _Replacement(
+    re.compile('&#x?0*;.*', re.DOTALL), lambda end: _blank(end[0]),
+    'a reference to U+0000 ends the value')
 _SPACES = _Replacement(
-    re.compile(f'[{_OTHER_SPACE}]'), ' ', 'U+{:04X} is no character of XML; it is read as a blank')
+    re.compile('[\v\f]|&#(?:0*1[12]|x0*[bcBC]);'), ' ',
+    'vertical tabs and form feeds are no characters of XML; they are read as blanks')
 _AMPERSANDS = _Replacement(
     re.compile(r'&(?!(?:amp|lt|gt|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)'), '&amp;',
     '"&" is not the beginning of a known entity')
@@ -142,7 +149,7 @@ class _Repairer:
             if token is None or rest is None:
                 return None
             begin, position = position, rest.end()
-            is_last_text = position == len(decoded) and bool((token['text'] or '').strip())
+            is_last_text = position == len(decoded) and (token['text'] or '').strip(WHITE_SPACE)
             if (token['instruction'] and not self._may_declare) or (
                     self._is_after_root and is_last_text):
                 return None
@@ -179,7 +186,10 @@ class _Repairer:
             return f'<!--{_blank(inside)}-->'
         if token['text']:
             if not is_outside:
-                return self._repaired_text(whole)
+                if ']]>' in whole:
+                    self._note('"]]>" in text')
+                whole = self._repaired_value(self._replaced(whole, _SPACES))
+                return whole.replace(']]>', ']]&gt;')
             if whole.strip('\ufeff \t\r\n'):
                 where = 'after' if self._is_after_root else 'before'
                 self._note(f'text {where} the outermost element')
@@ -203,36 +213,34 @@ class _Repairer:
         if token['space']:
             self._note('white space behind "<"')
         for attribute in _ATTRIBUTE.finditer(token.string, token.end(), rest.start()):
-            space, name, value = attribute.groups()
+            space, name, quote, value = attribute.groups()
             if not space:
                 self._note('no white space before an attribute')
             if '<' in value:
                 self._note('"<" in the value of an attribute')
-            value = self._replaced(value, _AMPERSANDS).replace('<', '&lt;')
-            parts.append(f'{space or " "}{name}{value}')
+            value = self._repaired_value(value).replace('<', '&lt;')
+            parts.append(f'{space or " "}{name}{value}{quote}')
         return ''.join([*parts, rest[0]])
 
-    def _repaired_text(self, text: str) -> str:
-        if ']]>' in text:
-            self._note('"]]>" in text')
-        text = self._replaced(self._replaced(text, _SPACES), _CHARACTERS)
-        text = _REFERENCE.sub(self._repaired_reference, text)
-        return self._replaced(text, _AMPERSANDS).replace(']]>', ']]&gt;')
+    def _repaired_value(self, text: str) -> str:
+        """Repair the characters in a text, or in the value of an attribute."""
+        text = self._replaced(self._replaced(text, _ENDS), _CHARACTERS)
+        return self._replaced(_REFERENCE.sub(self._repaired_reference, text), _AMPERSANDS)
 
     def _repaired_reference(self, reference: re.Match[str]) -> str:
         digits = (reference[1] or reference[2]).lstrip('0') or '0'
         code = int(digits[:_LONGEST_REFERENCE], 10 if reference[1] else 16)
-        if 0 < code <= sys.maxunicode and not _NOT_XML.match(chr(code)):
+        if code <= sys.maxunicode and not _NOT_XML.match(chr(code)):
             return reference[0]
         self._note(f'{reference[0][:20]} is no character of XML; it is replaced')
-        return ' ' if 0 < code <= sys.maxunicode and chr(code) in _OTHER_SPACE else _REPLACEMENT
+        return _REPLACEMENT if code <= _LAST_READ else ''
 
     def _replaced(self, text: str, replacement: _Replacement) -> str:
         pattern, new, fault = replacement
         found = pattern.search(text)
         if found is not None:
             line = self._line + text.count('\n', 0, found.start())
-            self._note(fault.format(ord(found[0])), line)
+            self._note(fault.format(ord(found[0][0])), line)
         return pattern.sub(new, text)
 
     def _note(self, fault: str, line: int = 0) -> None:

@@ -22,9 +22,9 @@ from sdf_pose_bridge.names import shortened
 XmlElement: TypeAlias = etree._Element  # noqa: SLF001  # lxml has no public name for it
 
 WHITE_SPACE = ' \t\n\r\f\v'
-"""ASCII white space. SDFormat has no other, so a no-break space is part of a name."""
+"""White space in texts. SDFormat has no other, so a no-break space is part of a name."""
 
-_WHITE_SPACE_RUN = re.compile(r'[ \t\n\r\f\v]+')
+_WORD = re.compile(f'[^{WHITE_SPACE}]+')
 _COMMENT: object = etree.Comment
 
 
@@ -85,18 +85,16 @@ def text_of(xml: XmlElement) -> str:
     The value is the first run of character data. Comments before it are skipped. A comment, a
     border of CDATA or an element in it ends it.
 
-    :return: the text with its white space; empty if there is none.
+    :return: the text, stripped; empty if there is none.
     """
-    text = xml.text
-    if text is not None and not text.isspace():
-        return text
-    for child in xml:
+    text = (xml.text or '').strip(WHITE_SPACE)
+    for child in xml if not text else ():
         if child.tag is not _COMMENT:
             break
-        tail = child.tail
-        if tail is not None and not tail.isspace():
-            return tail
-    return ''
+        text = (child.tail or '').strip(WHITE_SPACE)
+        if text:
+            break
+    return text
 
 
 def value_of(xml: XmlElement) -> str:
@@ -107,7 +105,13 @@ def value_of(xml: XmlElement) -> str:
     """
     text = text_of(xml)
     # Most values are plain names, which are recognized faster.
-    return text if text.isidentifier() else _WHITE_SPACE_RUN.sub(' ', text).strip(' ')
+    return text if text.isidentifier() else ' '.join(words_of(text))
+
+
+def words_of(text: str) -> list[str]:
+    """Split a text at white space, of which SDFormat has less than Python."""
+    # XML has no other ASCII white space, and split is faster.
+    return text.split() if text.isascii() else _WORD.findall(text)
 
 
 def child_at(parent: XmlElement, path: str) -> XmlElement | None:
@@ -135,8 +139,8 @@ def value_at(parent: XmlElement, path: str, default: str = '') -> str:
 
 def attribute_of(xml: XmlElement, name: str) -> str:
     """Return the value of an attribute, stripped; empty if there is none."""
-    value = xml.get(name)
-    return '' if value is None else value.strip(WHITE_SPACE)
+    # In attributes, libsdformat strips no other white space (sdf::trim).
+    return xml.get(name, '').strip(' \t\n')
 
 
 def described(xml: XmlElement) -> str:

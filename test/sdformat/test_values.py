@@ -306,9 +306,9 @@ def test_empty_pose_of_a_waypoint_is_refused():
 # Booleans
 
 @pytest.mark.parametrize(('value', 'texts'), [
-    (True, ['true', 'True', 'TRUE', '1', ' true\n']),
-    (False, ['false', 'False', 'FALSE', '0', '\t0 ']),
-    (None, ['yes', 'no', 't', '2', '-1', '01', '1.0', 'tru e', '\u0661', '\u00a01', '']),
+    (True, ['true', 'True', 'TRUE', '1']),
+    (False, ['false', 'False', 'FALSE', '0']),
+    (None, ['yes', 'no', 't', '2', '-1', '01', '1.0', 'tru e', '\u0661', '\u00a01', ' 1', '']),
 ])
 def test_boolean(value, texts):
     assert [boolean_from_text(text) for text in texts] == [value] * len(texts)

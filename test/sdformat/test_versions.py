@@ -113,8 +113,8 @@ def frame_of_axis(text):
 
 
 @pytest.mark.parametrize(('versions', 'flags', 'frame'), [
-    ('1.4 1.5 1.6', ['true', '1', 'TRUE', ' true '], '__model__'),
-    ('1.4 1.6', ['false', '0', '', 'maybe'], None),
+    ('1.4 1.5 1.6', ['true', '1', 'True', 'TRUE', ' true '], '__model__'),
+    ('1.4 1.6', ['false', '0', '', 'maybe', 'tRuE'], None),
     ('1.7', ['true'], None),
     ('1.3 1.4', [None], '__model__'),
     ('1.5 1.6', [None], None),

@@ -11,6 +11,7 @@ import pytest
 from sdf_texts import (
     assert_at,
     codes_of,
+    fixed_joint,
     LINK,
     link_with,
     model_file,
@@ -273,8 +274,9 @@ def test_processing_instruction_in_an_element_does_not_hide_its_text():
 
 
 @pytest.mark.parametrize('attributes', ['\nnot_defined="1"', ' alias="a>b"\nnot_defined="1"'])
-def test_tag_over_several_lines_has_the_line_of_its_beginning(attributes):
-    scene = load_text(model_file(f'\n<link name="l"{attributes}/>'))
+@pytest.mark.parametrize('comment', ['', '<!-- < -->', '<![CDATA[<]]>'])
+def test_tag_over_several_lines_has_the_line_of_its_beginning(attributes, comment):
+    scene = load_text(model_file(f'{comment}\n<link name="l"{attributes}/>'))
     assert {warning.place.line for warning in scene.warnings} == {2}
 
 
@@ -326,7 +328,7 @@ MODEL = '<sdf version="1.9"><model name="m"><link name="l">{}</link></model></sd
 
 
 @pytest.mark.parametrize('text', [
-    '&#0;', '&#x0;', '&#1;', '&#xD800;', '&#55296;', '&#xFFFF;', '&#x110000;', '&#1114112;',
+    '&#1;', '&#xD800;', '&#55296;', '&#xFFFF;', '&#x110000;', '&#1114112;',
     '&#99999999999;', '\x01', '\ufffe', '<!-- \x01 -->', '<!-- \ufffe -->', '<![CDATA[\x01]]>',
 ])
 def test_characters_that_xml_does_not_have_are_replaced_in_text(text):
@@ -335,9 +337,15 @@ def test_characters_that_xml_does_not_have_are_replaced_in_text(text):
     assert 'is no character of XML; it is replaced' in scene.warnings[0].message
 
 
-@pytest.mark.parametrize('text', ['&#0;', '&#x110000;', '\x01', '\ufffe'])
-def test_characters_that_xml_does_not_have_are_refused_in_names(text):
-    assert codes_of(f'<sdf version="1.9"><model name="m{text}"/></sdf>') == ['FILE_READ']
+@pytest.mark.parametrize(('text', 'read'), [
+    ('&#;', ''), ('&#0;x', ''), ('&#x0;', ''), ('&#x7FFFFFFF;', ''), ('&#xFFFF;', '\ufffd'),
+    ('&#x110000;', '\ufffd'), ('\x01', '\ufffd'), ('\ufffe', '\ufffd')])
+def test_characters_that_xml_does_not_have_are_read_in_names_and_references(text, read):
+    scene = load_text(model_file(
+        f'<link name="l{text}"/><frame name="f" attached_to="l{text}"/>'
+        + fixed_joint('j', 'world', f'l{text}')))
+    assert names_of(scene) == ['m', f'm::l{read}', 'm::f', 'm::j']
+    assert 'U+0000' in scene.warnings[0].message or 'no character' in scene.warnings[0].message
 
 
 @pytest.mark.parametrize('text', ['&#65;', '&#x1F916;', '&#x0000000041;', '&#10;', '\t'])

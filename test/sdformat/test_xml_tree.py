@@ -2,9 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reading values from XML elements: text, attributes, prefixes, steps of paths."""
 
+import ast
+from pathlib import Path
+
 from lxml import etree
 import pytest
 
+from sdf_pose_bridge.sdformat import xml_tree
 from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
 from sdf_pose_bridge.sdformat.xml_tree import (
     attribute_of,
@@ -34,8 +38,11 @@ def xml(text):
     ('1 2', '1 2'),
     ('<!-- c -->1 2', '1 2'),
     (' \n<!-- c --> <!-- d -->1 2', '1 2'),
-    ('1 <!-- c -->2', '1 '),
-    ('1 <x/>2', '1 '),
+    ('1 <!-- c -->2', '1'),
+    ('1 <x/>2', '1'),
+    ('&#160;<!-- c -->1', '\u00a0'),
+    ('<!-- c -->&#8195;<!-- c -->1', '\u2003'),
+    ('\x85', '\x85'),
     ('<![CDATA[1 2]]>', '1 2'),
     (' <![CDATA[1 2]]> 3', '1 2'),
     ('1<![CDATA[2]]>', '1'),
@@ -62,10 +69,22 @@ def test_value_has_no_ascii_white_space_around_it(content, value):
 
 @pytest.mark.parametrize(('attributes', 'value'), [
     ('', ''), ('name=""', ''), ('name="  "', ''), ('name=" a "', 'a'), ('name="&#10;a&#9;"', 'a'),
-    ('name="\u00a0a"', '\u00a0a'), ('x:name="a"', ''), ('Name="a"', ''),
+    ('name="\u00a0a"', '\u00a0a'), ('name="&#13;a"', '\ra'), ('name="\ra"', 'a'), ('x:name="a"', ''), ('Name="a"', ''),
 ])
 def test_attribute_has_no_ascii_white_space_around_it(attributes, value):
     assert attribute_of(xml(f'<link {attributes}/>'), 'name') == value
+
+
+def test_white_space_of_python_is_in_no_other_module():
+    # The tables of the grammar have texts of this package only.
+    modules = set(Path(xml_tree.__file__).parent.rglob('*.py')) - {Path(xml_tree.__file__)}
+    calls = [
+        f'{path.name}:{call.lineno}' for path in modules
+        if path.stem not in ('grammar', 'specification')
+        for call in ast.walk(ast.parse(path.read_text(encoding='utf-8')))
+        if isinstance(call, ast.Call) and isinstance(call.func, ast.Attribute) and not call.args
+        and call.func.attr in ('isspace', 'lstrip', 'rsplit', 'rstrip', 'split', 'strip')]
+    assert calls == []
 
 
 # Children

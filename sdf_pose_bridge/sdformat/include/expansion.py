@@ -40,8 +40,9 @@ from sdf_pose_bridge.sdformat.include.uris import (
 )
 from sdf_pose_bridge.sdformat.reader import is_valid_element
 from sdf_pose_bridge.sdformat.sources import Sources
-from sdf_pose_bridge.sdformat.values import boolean_from_text
+from sdf_pose_bridge.sdformat.values import TRUE_TEXTS
 from sdf_pose_bridge.sdformat.xml_tree import (
+    attribute_of,
     child_elements,
     copy_of,
     described,
@@ -93,12 +94,12 @@ class IncludeExpansion:
     def _mark_missing(self, include: XmlElement) -> None:
         """Record the URI of an include that is not replaced, by the names that it may have."""
         uri, name = value_at(include, 'uri') or 'no URI', value_at(include, 'name')
-        is_merge = boolean_from_text(include.get('merge', 'false')) is not False
-        names = [name] if name and not is_merge else ['', _name_from_uri(uri)]
+        names = [name] if name and not _is_merge(include) else ['', _name_from_uri(uri)]
         self._sources.set_origin(include, missing=dict.fromkeys(names, uri))
 
     def _expand_include(self, include: XmlElement, files: tuple[str, ...]) -> None:
-        if first_child(include, 'uri') is None:
+        uri_xml = first_child(include, 'uri')
+        if uri_xml is None:
             msg = 'the include has no <uri>, so it includes nothing'
             self._sources.error(AttributeMissingError, include, msg)
             return
@@ -107,7 +108,7 @@ class IncludeExpansion:
         place, uri = self._sources.place(include), value_at(include, 'uri')
         found = self._included_file(place, uri, files)
         if isinstance(found, str):
-            self._report_missing(place, uri, found)
+            self._report_missing(self._sources.place(uri_xml), uri, found)
             return
         chosen = None if found is None else self._top(include, found)
         if chosen is None:
@@ -122,7 +123,7 @@ class IncludeExpansion:
             return
         for each in added:
             self._expand_in(each, files)
-        if boolean_from_text(include.get('merge', 'false')):
+        if _is_merge(include):
             self._merge(include, top, chosen)
         else:
             self._insert(include, top)
@@ -246,6 +247,11 @@ class IncludeExpansion:
             parent.remove(include)
         else:
             parent.replace(include, top)
+
+
+def _is_merge(include: XmlElement) -> bool:
+    # libsdformat asks TinyXML-2, which skips white space before a number only.
+    return include.get('merge') in TRUE_TEXTS or attribute_of(include, 'merge') == '1'
 
 
 def _name_from_uri(uri: str) -> str:

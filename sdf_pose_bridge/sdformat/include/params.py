@@ -42,7 +42,6 @@ from sdf_pose_bridge.sdformat.xml_tree import (
     child_elements,
     copy_of,
     text_of,
-    WHITE_SPACE,
     with_ancestors,
     written_tag,
     XmlElement,
@@ -185,9 +184,8 @@ class _Changer:
 
     def _modify(self, xml: XmlElement, target: XmlElement) -> None:
         text = text_of(xml)
-        has_text = bool(text.strip())
-        self._change(xml, target, text if has_text and _holds_value(target) else None)
-        if not has_text:
+        self._change(xml, target, text if text and _holds_value(target) else None)
+        if not text:
             for child in child_elements(xml):
                 self._modify_child(child, target)
 
@@ -232,7 +230,7 @@ class _Changer:
                 msg = f'SDFormat defines no attribute {name} of <{written_tag(target)}>'
                 self._error(AttributeInvalidError, xml, msg)
             elif (is_read_before and name in _POSE_FORMAT_ATTRIBUTES and target.tag == 'pose'
-                    and text_of(target).strip()):
+                    and text_of(target)):
                 if target.get(name) != value:
                     msg = (f'{name}="{value}" has no effect: libsdformat has read the numbers of '
                            'this pose before')
@@ -323,7 +321,7 @@ def _start_tag(xml: XmlElement) -> str:
 
 
 def _is_empty(xml: XmlElement) -> bool:
-    return len(xml) == 0 and not (xml.text or '').strip()
+    return len(xml) == 0 and not text_of(xml)
 
 
 # Look-ups by element_id
@@ -336,10 +334,9 @@ def element_by_id(top: XmlElement, element_id: str, tag: str = '') -> XmlElement
     while match is not None:
         children, match = child_elements(match), None
         for child in children:
-            written = child.get('name')
-            if written is None:
+            if child.get('name') is None:
                 continue
-            name = written.strip(WHITE_SPACE).encode()
+            name = attribute_of(child, 'name').encode()
             if not tag and name == wanted:
                 return child
             last = start + len(name) - 1

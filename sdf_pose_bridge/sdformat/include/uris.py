@@ -24,7 +24,7 @@ from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.templates import hint_about_missing_file
 from sdf_pose_bridge.sdformat.versions import NEWEST, version_numbers
 from sdf_pose_bridge.sdformat.xml_file import xml_from_file
-from sdf_pose_bridge.sdformat.xml_tree import child_elements, first_child, text_of, WHITE_SPACE
+from sdf_pose_bridge.sdformat.xml_tree import attribute_of, child_elements, first_child, value_of
 
 _SCHEME = re.compile(r'([A-Za-z][A-Za-z0-9+.-]*)://')
 _SCHEME_OF_ADDRESS = re.compile(r'[A-Za-z][A-Za-z0-9+.-]+(?=:/)')
@@ -374,7 +374,7 @@ def model_file_from_directory(directory: str, usage: Usage) -> ModelFile:
     warnings += file.warnings
     versions = {}
     for entry in child_elements(root, 'sdf'):
-        version = version_numbers(entry.get('version', '').strip(WHITE_SPACE))
+        version = version_numbers(attribute_of(entry, 'version'))
         if version > NEWEST:
             written = shortened(entry.get('version', ''))
             msg = f'version {written} of the model is newer than {NEWEST} and skipped'
@@ -383,7 +383,7 @@ def model_file_from_directory(directory: str, usage: Usage) -> ModelFile:
         else:
             versions[entry] = version
     chosen = max(versions, key=versions.__getitem__, default=first_child(root, 'sdf'))
-    name = '' if chosen is None else text_of(chosen).strip(WHITE_SPACE)
+    name = '' if chosen is None else value_of(chosen)
     if root.tag != 'model' or chosen is None or not name:
         msg = 'the manifest names no file: it has no <sdf> in a <model>'
         raise ParsingError(msg, Place(manifest, root.sourceline or 0))

@@ -50,12 +50,12 @@ from sdf_pose_bridge.sdformat.urdf.values import (
     rpy_by_urdfdom,
     text_from_numbers,
 )
-from sdf_pose_bridge.sdformat.values import number_from_word, words_of
+from sdf_pose_bridge.sdformat.values import number_from_word
 from sdf_pose_bridge.sdformat.xml_tree import (
     child_elements,
     first_child,
     text_of,
-    WHITE_SPACE,
+    words_of,
     written_tag,
     XmlElement,
 )
@@ -376,12 +376,12 @@ class _Conversion:
             moved = pose_product(joint.origin, pose_from_xyz_rpy(numbers[:3], numbers[3:]))
             # libsdformat writes six digits at each step.
             pose.text = text_from_numbers([*moved[:3], *rpy_by_urdfdom(moved)], 6)
-            numbers = list(map(float, pose.text.split()))
+            numbers = list(map(float, words_of(pose.text)))
             name = joint.parent
 
     def _replace_lumped_ends_of_joints(self) -> None:
         for joint in chain.from_iterable(self._extensions.values()):
             for end in child_elements(joint, 'parent', 'child') if joint.tag == 'joint' else ():
-                base = self._bases.get(text_of(end).strip(WHITE_SPACE))
+                base = self._bases.get(text_of(end))
                 if base is not None:
                     end.text = base.link.name

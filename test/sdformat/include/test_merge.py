@@ -62,6 +62,15 @@ def errors_in(tmp_path):
     return load_main
 
 
+@pytest.mark.parametrize(('flags', 'name'), [
+    (['true', 'True', 'TRUE', '1', ' 1 '], 'm::f'),
+    (['false', 'tRuE', ' true', 'true ', '0', ''], 'm::arm::f')])
+def test_flag_of_a_merge_has_few_spellings(scene_of, flags, name):
+    for flag in flags:
+        main = in_model(include().replace('"true"', f'"{flag}"'))
+        assert name in scene_of(main).names, flag
+
+
 # What cannot be merged
 
 @pytest.mark.parametrize('tag', ['light', 'actor'])
