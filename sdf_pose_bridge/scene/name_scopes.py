@@ -14,6 +14,7 @@ from itertools import chain, islice
 
 import numpy as np
 
+from sdf_pose_bridge.errors import DuplicateNameError
 from sdf_pose_bridge.geometry.chains import ends_from_pointers
 from sdf_pose_bridge.names import (
     MODEL_FRAME,
@@ -56,12 +57,15 @@ class NameScopes:
         self.roots: list[int] = ends_from_pointers(elements.parents).tolist()
         self._is_model: list[bool] = (elements.kinds == Kind.MODEL).tolist()
         self._frames = defaultdict[int, dict[str, int]](dict)
-        # If names are equal, which is an error, the first one counts.
-        for index in np.flatnonzero(IS_FRAME_KIND[elements.kinds])[::-1].tolist():
-            frames = self._frames[self.roots[index]]
-            frames[self.names[index]] = index
-            if self._is_model[index]:
-                frames[self.names[index] + _OWN_FRAME] = index
+        for index in np.flatnonzero(IS_FRAME_KIND[elements.kinds]).tolist():
+            frames, name = self._frames[self.roots[index]], self.names[index]
+            for each in (name, name + _OWN_FRAME) if self._is_model[index] else (name,):
+                other = frames.setdefault(each, index)
+                # In old files, names may contain the separator. Other reasons are reported already.
+                if other != index and SEPARATOR in elements.names[index] + elements.names[other]:
+                    msg = (f'the name "{each}" belongs to a {elements.kind(other).label} already, '
+                           f'see {elements.place(other)}')
+                    problems.error(DuplicateNameError(msg, elements.place(index)))
         for world in np.flatnonzero(elements.kinds == Kind.WORLD).tolist():
             self._frames[world][WORLD_FRAME] = world
 

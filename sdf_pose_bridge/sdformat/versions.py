@@ -203,15 +203,14 @@ def _nest_scoped_elements(model: XmlElement, sources: Sources, depth: int = 1) -
             _nest_scoped_elements(child, sources, depth + 1)
             is_stopped = True
         part = PARTS_OF_MODEL.get(child.tag)
-        if part is None or not part.has_name or not separator or not name:
+        if part is None or not part.has_name or not separator or (
+                is_stopped and scope not in nested_models):
             continue
-        if not scope:
-            # libsdformat cuts two characters off each name in the model then.
-            msg = f'the name "{SEPARATOR}{name}" names no model before "{SEPARATOR}"'
+        if not scope or not name:
+            missing = 'element behind' if scope else 'model before'
+            msg = f'the name "{scope}{SEPARATOR}{name}" names no {missing} "{SEPARATOR}"'
             raise ConversionError(msg, sources.place(child))
         if scope not in nested_models:
-            if is_stopped:
-                continue
             nested_models[scope] = etree.Element('model', {'name': scope})
             sources.set_source(nested_models[scope], child)
         prefix = scope + SEPARATOR

@@ -7,6 +7,7 @@ import itertools
 import pytest
 from sdf_texts import (
     codes_of,
+    errors_of,
     fixed_joint,
     KINDS_IN_MODELS,
     LINK,
@@ -167,6 +168,7 @@ def world(content, version='1.7'):
      'CONVERSION_ERROR'),
     ('<link name="n::l"><pose relative_to="base"/></link>', 'POSE_RELATIVE_TO_INVALID'),
     ('<model name="::n"><link name="l"/></model>', 'CONVERSION_ERROR'),
+    ('<link name="n::"/>', 'CONVERSION_ERROR'),
 ])
 def test_reference_from_a_nested_model_to_outside_cannot_be_converted(content, code):
     assert codes_of(world(f'<link name="base"/>{content}')) == [code]
@@ -227,6 +229,18 @@ NESTED_ALREADY = '<model name="k"><link name="l"/><link name="p::a"/></model>'
 ])
 def test_a_model_that_is_nested_already_stops_the_conversion(content, names):
     assert names_of(load_text(world(content)))[1:] == [f'm::{name}' for name in names]
+
+
+@pytest.mark.parametrize('name', ['k::l', 'k::__model__', 'k::p::a'])
+@pytest.mark.parametrize('file', [world, model_file], ids=['world', 'model'])
+def test_name_of_an_element_in_a_nested_model_is_refused_outside_of_it(file, name):
+    (error,) = errors_of(file(f'{NESTED_ALREADY}\n<frame name="{name}"/>', version='1.7'))
+    assert (error.code, error.line) == ('DUPLICATE_NAME', 2)
+
+
+@pytest.mark.parametrize('name', ['n::', '::n'])
+def test_name_without_a_part_is_accepted_where_the_conversion_stops(name):
+    assert f'm::{name}' in load_text(world(f'{NESTED_ALREADY}<link name="{name}"/>')).names
 
 
 def test_world_stays_the_parent_of_a_joint():
