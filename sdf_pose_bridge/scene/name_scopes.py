@@ -61,10 +61,9 @@ class NameScopes:
             frames, name = self._frames[self.roots[index]], self.names[index]
             for each in (name, name + _OWN_FRAME) if self._is_model[index] else (name,):
                 other = frames.setdefault(each, index)
-                # In old files, names may contain the separator. Other reasons are reported already.
+                # Only names with the separator, as old files may have, are not reported already.
                 if other != index and SEPARATOR in elements.names[index] + elements.names[other]:
-                    msg = (f'the name "{each}" belongs to a {elements.kind(other).label} already, '
-                           f'see {elements.place(other)}')
+                    msg = f'the name "{each}" is in use already, see {elements.place(other)}'
                     problems.error(DuplicateNameError(msg, elements.place(index)))
         for world in np.flatnonzero(elements.kinds == Kind.WORLD).tolist():
             self._frames[world][WORLD_FRAME] = world

@@ -207,8 +207,7 @@ def _nest_scoped_elements(model: XmlElement, sources: Sources, depth: int = 1) -
                 is_stopped and scope not in nested_models):
             continue
         if not scope or not name:
-            missing = 'element behind' if scope else 'model before'
-            msg = f'the name "{scope}{SEPARATOR}{name}" names no {missing} "{SEPARATOR}"'
+            msg = f'the name "{scope}{SEPARATOR}{name}" is empty before or behind "{SEPARATOR}"'
             raise ConversionError(msg, sources.place(child))
         if scope not in nested_models:
             nested_models[scope] = etree.Element('model', {'name': scope})

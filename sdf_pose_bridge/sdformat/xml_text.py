@@ -50,8 +50,6 @@ _TOKEN = re.compile(
 """A token, or the beginning of a tag, which attributes and ``_REST_OF_TAG`` follow."""
 _REST_OF_TAG = re.compile(rf'{_SPACE}(?P<empty>/?)>')
 _REFERENCE = re.compile(r'&#(?:([0-9]+)|x([0-9a-fA-F]+));')
-_LAST_READ = 0x1fffff
-"""TinyXML-2 reads references to larger numbers as nothing."""
 _NOT_XML = re.compile('[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]')
 """A character that XML does not have."""
 _REPLACEMENT = '\ufffd'
@@ -233,7 +231,7 @@ class _Repairer:
         if code <= sys.maxunicode and not _NOT_XML.match(chr(code)):
             return reference[0]
         self._note(f'{reference[0][:20]} is no character of XML; it is replaced')
-        return _REPLACEMENT if code <= _LAST_READ else ''
+        return _REPLACEMENT if code <= 0x1fffff else ''  # TinyXML-2 drops larger ones
 
     def _replaced(self, text: str, replacement: _Replacement) -> str:
         pattern, new, fault = replacement

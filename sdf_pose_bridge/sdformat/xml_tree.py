@@ -88,12 +88,10 @@ def text_of(xml: XmlElement) -> str:
     :return: the text, stripped; empty if there is none.
     """
     text = (xml.text or '').strip(WHITE_SPACE)
-    for child in xml if not text else ():
-        if child.tag is not _COMMENT:
+    for child in () if text else xml:
+        if text or child.tag is not _COMMENT:
             break
         text = (child.tail or '').strip(WHITE_SPACE)
-        if text:
-            break
     return text
 
 
@@ -138,8 +136,7 @@ def value_at(parent: XmlElement, path: str, default: str = '') -> str:
 
 
 def attribute_of(xml: XmlElement, name: str) -> str:
-    """Return the value of an attribute, stripped; empty if there is none."""
-    # In attributes, libsdformat strips no other white space (sdf::trim).
+    """Return the value of an attribute, stripped as by ``sdf::trim``; empty if there is none."""
     return xml.get(name, '').strip(' \t\n')
 
 
