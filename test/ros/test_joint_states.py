@@ -22,16 +22,15 @@ from std_msgs.msg import Header
 from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge import load_text
-from sdf_pose_bridge.ros import joint_states
+from sdf_pose_bridge.ros import joint_states, state_messages
 from sdf_pose_bridge.ros.given_parameters import settings_from_values
 from sdf_pose_bridge.ros.joint_states import (
-    INITIAL_PERIOD_S,
     JointStates,
     TOPICS_PERIOD_S,
 )
-from sdf_pose_bridge.ros.published_frames import PublishedFrames
+from sdf_pose_bridge.ros.published_frames import PublishedFrames, TF
 from sdf_pose_bridge.ros.publishers import Publishers
-from sdf_pose_bridge.ros.state_messages import LATE_S
+from sdf_pose_bridge.ros.state_topic import MOST_WAITING
 from sdf_pose_bridge.ros.topic_names import StateTopics
 from sdf_pose_bridge.tf.joint_positions import JointPositions, UnreportedJoints
 from sdf_pose_bridge.tf.lookup import PoseLookup
@@ -86,8 +85,9 @@ class Following:
         self.states = self.frames = None
         self.found = []
         """What each message on ``/tf`` has, as :func:`frames_by_stamp` returns it."""
-        listener.create_subscription(
+        self._tf = listener.create_subscription(
             TFMessage, '/tf', lambda message: self.found.append(frames_by_stamp(message)), 1000)
+        self._clock = None
 
     def start(self, text=ARM, unreported=UnreportedJoints.NONE, topics=TOPICS, rule=EACH):
         self.frames = self.frames_of(text, unreported)
@@ -106,18 +106,32 @@ class Following:
         self._publishers.opened(frames.transforms_topic)
         return frames
 
-    def connect(self, topic='/joint_states', joints=('turn',), attempt_s=0.05):
-        """Send positions of joints until they are published, again after each attempt."""
-        self._senders[topic] = self.listener.create_publisher(JointState, topic, 1000)
-        sec = 0
-        while not any(1 <= each <= sec for each in self.secs()):
-            sec += 1
-            self.send(sec, dict.fromkeys(joints, 0.0), topic)
-            ends_at = time.monotonic() + attempt_s
-            while sec not in self.secs() and time.monotonic() < ends_at:
-                self.spin(0.01)
-        self.wait(lambda: sec in self.secs())
+    def connect(self, topic='/joint_states', joints=('turn',)):
+        """Send positions of joints, and wait until they are published."""
+        sender = self._senders[topic] = self.listener.create_publisher(JointState, topic, 1000)
+        subscription = next(
+            each for each in self.node.subscriptions if each.topic_name == topic)
+        tf = self._publishers.existing(TF)
+        # The other side may not know an end that knows the other side.
+        self.wait(lambda: all(each.get_subscription_count() for each in (sender, tf)) and all(
+            each.get_publisher_count() for each in (subscription, self._tf)))
+        self.send(1, dict.fromkeys(joints, 0.0), topic)
+        self.wait(lambda: 1 in self.secs())
+        # All frames are published once more.
+        self.wait(lambda: self.states._publish_all not in self.states._due)
         self.found.clear()
+
+    def set_time(self, sec):
+        """Set the simulated time."""
+        if self._clock is None:
+            self.node.set_parameters([Parameter('use_sim_time', value=True)])
+            self._clock = self.listener.create_publisher(Clock, '/clock', 1)
+
+        def is_set():
+            self._clock.publish(Clock(clock=Time(sec=sec)))
+            return self.node.get_clock().now().nanoseconds == sec * NOW
+
+        self.wait(is_set)
 
     def send(self, sec, positions, topic='/joint_states'):
         self._senders[topic].publish(JointState(
@@ -141,11 +155,9 @@ class Following:
         wait_until(
             condition, lambda: self._executor.spin_once(timeout_sec=0.01), lambda: self.found)
 
-    def spin(self, seconds):
-        """Run callbacks for a time."""
-        ends_at = time.monotonic() + seconds
-        while time.monotonic() < ends_at:
-            self._executor.spin_once(timeout_sec=0.01)
+    def wait_until_taken(self, position):
+        """Wait until the thread has taken the message that has a position."""
+        self.wait(lambda: position in self.frames.positions.values)
 
 
 @pytest.fixture
@@ -161,18 +173,23 @@ def arm(following):
     """Return an arm that is connected, all joints of which are known."""
     following.start(unreported=UnreportedJoints.ZERO)
     following.connect(joints=('turn', 'lift', 'grip'))
-    following.spin(2.0 * INITIAL_PERIOD_S)  # until all frames are published once more
     return following
 
 
-@pytest.fixture(name='slow_arm')
-def make_slow_arm(following):
-    """Makes an arm with a highest rate; ``slow_arm(frequency)``."""
-    def start(frequency):
-        following.start(rule=rule_of(frequency))
-        following.connect()
-        return following
-    return start
+SLOW = rule_of(0.001)
+"""A highest rate with periods of 1000 seconds."""
+
+START = 10_000
+"""Seconds of simulated time when the first of these periods begins."""
+
+
+@pytest.fixture
+def slow_arm(following):
+    """Return an arm in the first of these periods of simulated time."""
+    following.set_time(START)
+    following.start(rule=SLOW)
+    following.connect()
+    return following
 
 
 def test_a_transform_is_published_if_it_is_newer_than_the_last_one(arm):
@@ -196,20 +213,11 @@ def test_each_message_can_be_published_whatever_its_stamp_is(following):
 
 
 def test_after_simulated_time_has_jumped_back_older_stamps_are_published(following):
-    following.node.set_parameters([Parameter('use_sim_time', value=True)])
-    clock = following.listener.create_publisher(Clock, '/clock', 1)
-
-    def set_time(sec):
-        def is_set():
-            clock.publish(Clock(clock=Time(sec=sec)))
-            return following.node.get_clock().now().nanoseconds == sec * NOW
-        following.wait(is_set)
-
-    set_time(5000)
+    following.set_time(5000)
     following.start()
     following.connect()
     following.published((FIRST + 4, {'turn': 0.5}))
-    set_time(FIRST)
+    following.set_time(FIRST)
     following.found.clear()
     # The first one was sent before that, and waited.
     assert following.published((FIRST + 5, {'turn': 0.5}), (FIRST - 1, {'turn': 0.25})) == [
@@ -252,7 +260,6 @@ def test_stamps_that_go_back_are_reported_once_and_until_a_joint_of_them_moves_a
         sec += 1
         arm.send(FIRST + 50, {'turn': 0.1, 'lift': 0.1})
         arm.send(sec, {'lift': 0.1})
-        arm.spin(0.05)
         return arm.states.unreported.problems
 
     sec = FIRST + 100
@@ -272,18 +279,19 @@ def test_stamps_that_go_back_are_reported_once_and_until_a_joint_of_them_moves_a
 @pytest.mark.parametrize(('rule', 'newer', 'older'), [
     (EACH, 1, 0), (EACH, 0, 0), (rule_of(0.0, ignore_timestamp=True), 0, -5)],
     ids=['two publishers', 'a pause', 'ignored'])
-def test_stamps_that_do_not_stop_a_frame_are_not_reported(following, rule, newer, older):
+def test_stamps_that_do_not_stop_a_frame_are_not_reported(
+        following, monkeypatch, rule, newer, older):
+    monkeypatch.setattr(state_messages, 'LATE_S', 0.0)
     following.start(rule=rule)
     following.connect()
     following.published((FIRST, {'turn': 0.5}))
-    ends_at = time.monotonic() + 2.0 * LATE_S
     sec = FIRST
-    while time.monotonic() < ends_at:
+    for _ in range(9):
         sec += newer
         following.send(sec, {'turn': 0.5, 'lift': 0.5} if newer else {'turn': 0.5})
         following.send(sec - newer + older, {'turn': 0.5})
-        following.spin(0.05)
-        assert not following.states.unreported.problems
+    following.published((sec, {'turn': 0.25}), (sec + 1, {'grip': 0.75}))
+    assert not following.states.unreported.problems
 
 
 def test_a_message_without_a_stamp_gets_the_time_of_the_node(arm):
@@ -304,11 +312,17 @@ def test_other_frames_continue_with_the_positions_and_one_nanosecond_later(arm):
 
 
 def test_a_look_up_sees_the_messages_that_came_before_it(arm):
-    goes_on, seen = threading.Event(), []
+    goes_on, seen, arrived = threading.Event(), [], []
+    other = arm.listener.create_subscription(JointState, '/joint_states', arrived.append, 10)
+    arm.wait(lambda: other.get_publisher_count())
     arm.states._calls.append(lambda: goes_on.wait(DEADLINE_S))
     arm.states._wake()
-    arm.send(FIRST, {'turn': 0.5})
-    arm.spin(0.2)
+
+    def has_arrived():
+        arm.send(FIRST, {'turn': 0.5})
+        return arrived
+
+    arm.wait(has_arrived)
     future = arm.states.current_lookup()
     future.add_done_callback(lambda _: seen.extend(arm.frames.positions.values))
     assert not future.done()
@@ -328,15 +342,21 @@ def test_a_thread_that_does_not_answer_is_an_error(arm, monkeypatch):
 
 
 def test_nothing_of_the_frames_before_is_published_once_others_are_followed(arm):
-    goes_on, published, before = threading.Event(), [], arm.frames
+    begins, goes_on, published, before = threading.Event(), threading.Event(), [], arm.frames
+    wait = arm.states.wait
 
     def publish_slowly(rows):
-        goes_on.wait(0.2)
+        begins.set()
+        goes_on.wait(DEADLINE_S)
         published.append(rows)
 
-    before.publish_tf = publish_slowly
+    def go_on_and_wait():
+        goes_on.set()
+        wait()
+
+    before.publish_tf, arm.states.wait = publish_slowly, go_on_and_wait
     arm.send(FIRST, {'turn': 0.5})
-    arm.spin(0.1)
+    arm.wait(begins.is_set)
     arm.follow(arm.frames_of(), TOPICS, EACH)
     count = len(published)
     arm.send(FIRST + 1, {'turn': 0.5})
@@ -386,143 +406,116 @@ def test_it_ends_with_the_node(following):
 
 # A highest rate
 
-def test_messages_wait_for_the_end_of_a_period(slow_arm):
-    arm = slow_arm(2.0)
-    arm.published(*((FIRST + number, {'turn': 0.5}) for number in range(20)))
-    assert len(arm.found) < 10
-
-
 def test_of_a_period_the_newest_stamp_counts(slow_arm):
-    arm = slow_arm(2.0)
-    arm.published((FIRST, {'turn': 0.0}))
-    for after, position in ((1, 0.1), (4, 0.4), (3, 0.3)):
-        arm.send(FIRST + after, {'turn': position})
-    arm.send(FIRST + 2, {'grip': 0.2})
-    arm.wait(lambda: FIRST + 4 in arm.secs())
-    arm.spin(0.6)
-    assert arm.secs().count(FIRST + 4) == 1
-    assert FIRST + 3 not in arm.secs()
-    assert FIRST + 2 in arm.secs(), 'of another joint'
-    assert sorted(arm.frames.positions.values) == [0.0, 0.2, 0.4]
+    for after, position in ((1, 0.1), (2, 0.2), (4, 0.4), (3, 0.3)):
+        slow_arm.send(FIRST + after, {'turn': position})
+    slow_arm.send(FIRST + 2, {'grip': 0.5})
+    slow_arm.wait_until_taken(0.5)
+    assert not slow_arm.found
+    slow_arm.set_time(START + 1001)
+    slow_arm.wait(lambda: slow_arm.found)
+    assert slow_arm.found == [[(FIRST + 2, {'finger'}), (FIRST + 4, {'upper'})]]
+    assert sorted(slow_arm.frames.positions.values) == [0.0, 0.4, 0.5]
 
 
 def test_a_message_after_a_period_without_any_is_published_at_once(slow_arm):
-    arm = slow_arm(50.0)
-    for number in range(2):
-        arm.spin(0.1)
-        assert arm.published((FIRST + number, {'turn': 0.5}))
+    for number in (1, 2):
+        slow_arm.set_time(START + 1001 * number)
+        assert slow_arm.published((FIRST + number, {'turn': 0.5}))
 
 
-def test_positions_can_be_taken_before_the_end_of_a_period(slow_arm, finish):
-    arm = slow_arm(0.001)
-    arm.send(FIRST, {'turn': 0.5})
+def test_positions_can_be_taken_before_the_end_of_a_period(following, finish, monkeypatch):
+    monkeypatch.setattr(joint_states, '_LONGEST_SLEEP_S', DEADLINE_S)
+    following.start(rule=SLOW)
+    following.connect()
+    following.send(FIRST, {'turn': 0.5})
 
     async def current_lookup():
-        return await arm.states.current_lookup()
+        return await following.states.current_lookup()
 
     def is_taken():
-        assert finish(arm._executor, current_lookup) is arm.lookup
-        return 0.5 in arm.frames.positions.values
+        assert finish(following._executor, current_lookup) is following.lookup
+        return 0.5 in following.frames.positions.values
 
-    arm.wait(is_taken)
-    assert not arm.found
+    following.wait(is_taken)
+    assert not following.found
 
 
 def test_more_messages_than_a_subscription_holds_are_taken_in_a_long_period(slow_arm):
-    arm = slow_arm(1.0)
-    arm.send(FIRST, {'grip': 0.5})
-    for number in range(1, 301):
-        arm.send(FIRST + number, {'turn': 0.5})
-        arm.spin(0.002)
-    arm.wait(lambda: FIRST + 300 in arm.secs())
-    assert FIRST in arm.secs()
+    slow_arm.send(FIRST, {'grip': 0.5})
+    for number in range(1, 2 * MOST_WAITING):
+        slow_arm.send(FIRST + number, {'turn': number / 1000})
+        if number % (MOST_WAITING // 2) == 0:
+            slow_arm.wait_until_taken(number / 1000)
+    assert not slow_arm.found
+    slow_arm.set_time(START + 1001)
+    slow_arm.wait(lambda: FIRST in slow_arm.secs())
 
 
 def test_simulated_time_that_has_not_begun_holds_nothing_up(following):
     following.node.set_parameters([Parameter('use_sim_time', value=True)])
-    following.start(rule=rule_of(0.001))
+    following.start(rule=SLOW)
     following.connect()
     assert following.published((FIRST, {'turn': 0.5}), (FIRST + 1, {'turn': 0.5}))
 
 
-def test_a_period_is_one_of_simulated_time(following):
-    following.node.set_parameters([Parameter('use_sim_time', value=True)])
-    clock = following.listener.create_publisher(Clock, '/clock', 1)
-
-    def is_at(sec):
-        clock.publish(Clock(clock=Time(sec=sec)))
-        return following.node.get_clock().now().nanoseconds == sec * NOW
-
-    following.wait(lambda: is_at(10_000))
-    # A period of 1000 seconds.
-    following.start(rule=rule_of(0.001))
-    # What is sent in the period that a late first message begins would not be published.
-    following.connect(attempt_s=2.0)
-    following.send(FIRST, {'turn': 0.5})
-    following.spin(0.2)
-    assert not following.found
-    following.wait(lambda: is_at(12_000))
-    following.wait(lambda: FIRST in following.secs())
-
-
 # Several topics
 
-@pytest.fixture(name='two_arms')
-def make_two_arms(following):
-    """Makes two arms, each with its topic; ``two_arms(frequency)``."""
-    def start(frequency):
-        following.start(TWO_ARMS, topics=TWO_TOPICS)
-        for topic in ('/a/j', '/b/j'):
-            following.connect(topic)
-        following.follow(following.frames, TWO_TOPICS, rule_of(frequency))
-        following.spin(0.1)
-        return following
-    return start
+@pytest.fixture
+def two_arms(following):
+    """Return two arms, each with its topic, when no period of :data:`SLOW` has begun."""
+    following.set_time(START)
+    following.start(TWO_ARMS, topics=TWO_TOPICS)
+    for topic in ('/a/j', '/b/j'):
+        following.connect(topic)
+    following.follow(following.frames, TWO_TOPICS, SLOW)
+    return following
 
 
 def test_what_waits_at_the_end_of_a_period_is_one_message_with_the_stamp_of_each(two_arms):
-    arms = two_arms(2.0)
-    for number in range(20):
-        arms.send(FIRST + number, {'turn': 0.5}, '/a/j')
-        arms.send(FIRST + 100 + number, {'turn': 0.5}, '/b/j')
-    last = [(FIRST + 19, {'a/upper'}), (FIRST + 119, {'b/upper'})]
-    arms.wait(lambda: last in arms.found)
-    assert len(arms.found) < 10
+    two_arms.published((FIRST, {'turn': 0.5}, '/a/j'))
+    for number in range(1, 20):
+        two_arms.send(FIRST + number, {'turn': 0.25 if number == 19 else 0.5}, '/a/j')
+        two_arms.send(FIRST + 100 + number, {'turn': 0.75 if number == 19 else 0.5}, '/b/j')
+    two_arms.wait_until_taken(0.25)
+    two_arms.wait_until_taken(0.75)
+    two_arms.set_time(START + 1001)
+    two_arms.wait(lambda: len(two_arms.found) > 1)
+    assert two_arms.found == [
+        [(FIRST, {'a/upper'})], [(FIRST + 19, {'a/upper'}), (FIRST + 119, {'b/upper'})]]
 
 
 def test_robots_that_start_together_share_a_message(two_arms):
-    arms = two_arms(1.0)
-    arms.send(FIRST, {'turn': 0.5}, '/a/j')
-    arms.wait(lambda: arms.found)
-    arms.send(FIRST, {'turn': 0.5}, '/b/j')
-    arms.spin(0.3)
-    assert arms.found == [[(FIRST, {'a/upper'})]]
-    arms.wait(lambda: len(arms.found) == 2)
+    two_arms.published((FIRST, {'turn': 0.5}, '/a/j'))
+    two_arms.send(FIRST, {'turn': 0.75}, '/b/j')
+    two_arms.wait_until_taken(0.75)
+    assert two_arms.found == [[(FIRST, {'a/upper'})]]
+    two_arms.set_time(START + 1001)
+    two_arms.wait(lambda: len(two_arms.found) == 2)
 
 
 def test_the_first_message_of_a_robot_after_a_silence_does_not_wait(two_arms):
-    arms = two_arms(4.0)
-    for number in range(150):
-        arms.send(FIRST + number, {'turn': 0.5}, '/a/j')
-        arms.spin(0.01)
-    arms.found.clear()
-    arms.send(FIRST + 150, {'turn': 0.5}, '/a/j')
-    arms.wait(lambda: arms.found)
-    arms.send(FIRST + 151, {'turn': 0.5}, '/a/j')
-    arms.send(FIRST, {'turn': 0.5}, '/b/j')
-    arms.wait(lambda: FIRST in arms.secs())
-    assert [(FIRST, {'b/upper'})] in arms.found
+    two_arms.published((FIRST, {'turn': 0.5}, '/a/j'))
+    # A topic is silent after two periods without a message.
+    for number in (1, 2, 3):
+        two_arms.send(FIRST + number, {'turn': number / 10}, '/a/j')
+        two_arms.wait_until_taken(number / 10)
+        two_arms.set_time(START + 1001 * number)
+        two_arms.wait(lambda number=number: FIRST + number in two_arms.secs())
+    two_arms.send(FIRST + 4, {'turn': 0.4}, '/a/j')
+    two_arms.send(FIRST, {'turn': 0.5}, '/b/j')
+    two_arms.wait(lambda: [(FIRST, {'b/upper'})] in two_arms.found)
+    assert FIRST + 4 not in two_arms.secs()
 
 
 def test_too_many_messages_of_one_robot_leave_time_for_another(two_arms):
-    arms = two_arms(2.0)
-    topic = next(each for each in arms.states.sources.sources if each.model == 'a')
+    topic = next(each for each in two_arms.states.sources.sources if each.model == 'a')
     take = topic.take
     # As if messages came faster than they are taken.
     topic.take = lambda *arguments: take(*arguments) or True
-    arms.send(FIRST, {'turn': 0.5}, '/a/j')
-    arms.send(FIRST, {'turn': 0.75}, '/b/j')
-    arms.wait(lambda: 0.75 in arms.frames.positions.values)
+    two_arms.send(FIRST, {'turn': 0.5}, '/a/j')
+    two_arms.send(FIRST, {'turn': 0.75}, '/b/j')
+    two_arms.wait_until_taken(0.75)
 
 
 def test_an_unreported_joint_is_named_with_the_topics_that_can_name_it(following):
