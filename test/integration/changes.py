@@ -5,12 +5,9 @@
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
-import contextlib
-import os
 from pathlib import Path
 import time
 
-from deadline import wait_until
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from listener import latched
 from rcl_interfaces.msg import Parameter as ParameterMessage
@@ -24,7 +21,7 @@ from rclpy.parameter import Parameter
 from std_srvs.srv import Trigger
 from tf2_msgs.msg import TFMessage
 
-from sdf_pose_bridge_interfaces.srv import ConvertRotation, LookupPose
+from sdf_pose_bridge_interfaces.srv import LookupPose
 
 BRIDGE = '/sdf_pose_bridge'
 
@@ -153,58 +150,6 @@ class Monitor:
         count = self.count
         self._listener.wait(lambda: self.count > count + 1, lambda: 'diagnostics')
         return self.status
-
-
-LONGEST_WAIT_S = 0.5
-"""How long a caller of the node may have to wait, as docs/security.md promises."""
-
-
-class Waiting:
-    """
-    Asks for something small again and again, and checks that it never waits long.
-
-    Time in which their threads waited for a processor is not counted, because that depends on what
-    else the machine does. Several may wait at the same time, so the time in which the executor of
-    the node worked is looked at too.
-
-    :param listener: whose calls they are.
-    :param pid: the process of the node.
-    """
-
-    def __init__(self, listener, pid):
-        self._listener = listener
-        self._pid = pid
-        self._call()
-
-    def _scheduled(self):
-        """Return how long the executor has worked, and all threads have waited for a processor."""
-        worked_ns = waited_ns = 0
-        for pid in (self._pid, os.getpid()):
-            for path in Path(f'/proc/{pid}/task').glob('*/schedstat'):
-                with contextlib.suppress(OSError):  # the thread has ended meanwhile
-                    numbers = path.read_text().split()
-                    waited_ns += int(numbers[1])
-                    # The executor runs in the first thread.
-                    worked_ns += int(numbers[0]) if path.parent.name == str(self._pid) else 0
-        return 1e-9 * worked_ns, 1e-9 * waited_ns
-
-    def _call(self):
-        """Return how long a call takes."""
-        (worked_s, waited_s), begin = self._scheduled(), time.monotonic()
-        assert self._listener.call(
-            ConvertRotation, f'{BRIDGE}/convert_rotation', ConvertRotation.Request()).success
-        took_s = time.monotonic() - begin
-        worked_after_s, waited_after_s = self._scheduled()
-        # Threads that have ended are not counted any more.
-        return max(took_s - max(0.0, waited_after_s - waited_s), worked_after_s - worked_s)
-
-    def check_until(self, is_done):
-        """Ask until something is done."""
-        wait_until(is_done, self.check)
-
-    def check(self):
-        """Ask once."""
-        assert self._call() < LONGEST_WAIT_S
 
 
 def usage_of(pid):

@@ -13,8 +13,8 @@ from rclpy.qos import DurabilityPolicy, qos_profile_parameters, QoSProfile, Reli
 from sensor_msgs.msg import JointState
 from tf2_msgs.msg import TFMessage
 
-LOST_S = 2.0
-"""After this time an answer is considered lost."""
+LOST_S = 5.0
+"""Period in which the first request of a client is repeated; any answer to it counts."""
 
 
 def latched(depth):

@@ -526,7 +526,7 @@ def test_written_page_and_picture(shown, tmp_path):
     (tmp_path / 'cell.sdf').write_text(TEXT)
     for name in ('page.html', 'picture.png'):
         process = run_view(tmp_path, 'cell.sdf', '-o', name)
-        assert process.communicate(timeout=4 * DEADLINE_S) == ('', '')
+        assert process.communicate(timeout=DEADLINE_S) == ('', '')
     with browser(tmp_path / 'browser') as page:
         page.open((tmp_path / 'page.html').as_uri())
         page.wait_for("document.querySelector('canvas')")

@@ -110,8 +110,11 @@ def test_other_frames_and_the_own_ones_are_not_reported(looking):
         looking.send('tool', 'm', '/tf')
         looking.frames.publish_fixed_again()
         looking.look()
-    assert not looking.lines
     assert [each.topic_name for each in looking.node.subscriptions] == ['/tf_static']
+    looking.send('tool', 'odom')
+    looking.look_until(lambda: looking.lines)
+    (line,) = looking.lines
+    assert 'with the parent "odom"' in line
 
 
 def test_messages_are_read_for_a_limited_time(looking, monkeypatch):

@@ -3,7 +3,6 @@
 """Names of topics: legal, visible, readable where they can be, and never shared."""
 
 import re
-import time
 
 import pytest
 
@@ -15,6 +14,7 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from sdf_texts import joint, model_file, world_file
 
+from sdf_pose_bridge.ros import topic_names
 from sdf_pose_bridge.ros.given_parameters import settings_from_values
 from sdf_pose_bridge.ros.parameters import DECLARATIONS, SettingsError
 from sdf_pose_bridge.ros.topic_names import (
@@ -173,22 +173,26 @@ def test_a_node_whose_name_leaves_no_room_has_no_topics():
     assert 'longer than the middleware allows' in topics.warning
 
 
+@pytest.fixture
+def no_comparison(monkeypatch):
+    """Makes a comparison with a pattern an error."""
+    monkeypatch.setattr(topic_names, 'fnmatchcase', None)
+
+
+@pytest.mark.usefixtures('no_comparison')
 def test_patterns_that_would_take_too_long_are_refused():
     frame_ids = [f'{number}/{"a" * 300}' for number in range(40_000)]
-    begin = time.process_time()
     topics = pose_topics_from_patterns(frame_ids, [f'*{n}{"a" * 200}b' for n in range(1000)], '/n')
     assert topics.names == {}
     assert 'to compare 1000 patterns with 40000 frame ids takes too long' in topics.warning
-    assert time.process_time() - begin < 0.5
 
 
+@pytest.mark.usefixtures('no_comparison')
 def test_many_names_without_wildcards_are_found_at_once():
     frame_ids = [f'{number}/{"a" * 300}' for number in range(40_000)]
-    begin = time.process_time()
     topics = pose_topics_from_patterns(frame_ids, [*frame_ids[:999], 'none'], '/n')
     assert list(topics.names) == frame_ids[:999]
     assert '"none"' in topics.warning
-    assert time.process_time() - begin < 0.5
 
 
 # Topics of joint states
