@@ -225,7 +225,9 @@ class JointStates:
         if ready and not has_ended:
             self._take(ready, at_once=True)
         if self._period.has_begun and (has_ended or call_count or not ready):
-            self._take(self._target.sources, at_once=False)
+            # The next turn takes the messages of awaited sources, at once.
+            self._take([each for each in self._target.sources
+                        if has_ended or call_count or each not in awaited], at_once=False)
         if has_ended:
             self._end_period()
         self._make_calls(call_count)
@@ -278,8 +280,7 @@ class JointStates:
         Take messages of sources, and set their positions.
 
         :param at_once: whether to publish what they move, and to leave the others as soon as a
-            period has begun. Otherwise it waits, and of those with the same names the newest
-            counts.
+            period has begun. Otherwise it waits; of those with the same names the newest counts.
         """
         newest: dict[Effect, Message] = {}
         # Messages may come faster than they are taken. Sources take turns, so that one with too
