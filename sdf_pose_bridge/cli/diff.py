@@ -50,7 +50,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help='the largest distance in metres, and angle in radians, of a frame that has not '
              f'moved; by default {TOLERANCE:g}')
     add_kinds_argument(parser, 'compare only')
-    add_unit_arguments(parser, 'degrees')
+    add_unit_arguments(parser)
     parser.set_defaults(run=run)
 
 

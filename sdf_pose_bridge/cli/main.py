@@ -20,14 +20,18 @@ from typing import Any, NoReturn
 import sdf_pose_bridge
 from sdf_pose_bridge.cli import check, convert, diff, graph, poses, tree, urdf, view
 from sdf_pose_bridge.cli import set as set_command
-from sdf_pose_bridge.cli.printing import CommandError, discard_output, print_problems
+from sdf_pose_bridge.cli.printing import (
+    CommandError,
+    discard_output,
+    print_message,
+    print_problems,
+)
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.formats import PoseFormatError
-from sdf_pose_bridge.names import hint_from_names, NameIndex, printable
+from sdf_pose_bridge.names import hint_from_names, NameIndex
 from sdf_pose_bridge.process_limits import FOR_FILES, limited, LimitExceededError
 
-_NEGATIVE_NUMBER = re.compile(
-    r'^-(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$|^-(inf|nan)', re.IGNORECASE)
+_NEGATIVE_NUMBER = re.compile(r'^-(\.?\d|inf|nan)', re.IGNORECASE)
 _INVALID_CHOICE = re.compile(r"invalid choice: '(.*)' \(choose from (.*)\)")
 
 
@@ -67,8 +71,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
             raise
         discard_output()
         reason = f'the output cannot be written: {(error.strerror or str(error)).lower()}'
-    except (CommandError, PoseFormatError) as error:
-        reason = printable(str(error))
+    except CommandError as error:
+        code, reason = error.exit_code, str(error)
+    except PoseFormatError as error:
+        reason = str(error)
     except SdfError as error:
         print_problems(error.errors, error.warnings, sys.stderr)
         return 1
@@ -80,9 +86,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 130
     else:
         return code
-    program = ' '.join(filter(None, ('sdf_pose', options.command)))
-    print(f'{program}: {reason}', file=sys.stderr)
-    return 1
+    print_message(options.command, reason)
+    return code or 1
 
 
 @contextlib.contextmanager
@@ -101,7 +106,7 @@ def _limited() -> Iterator[None]:
 
 
 class _Parser(argparse.ArgumentParser):
-    """Parses whole options only, and negative numbers such as -1e-3 as numbers."""
+    """Parses whole options only, and negative numbers such as -1e-3, as numbers."""
 
     def __init__(self, **arguments: Any) -> None:
         super().__init__(**arguments, allow_abbrev=False)

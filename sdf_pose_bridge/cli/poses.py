@@ -49,7 +49,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help='position of a joint, in radians or metres; all others stay at zero. May be '
              'repeated. Names are as in joint_states: elbow, arm/elbow, wrist_axis2, ball_roll')
     add_kinds_argument(parser, 'print only')
-    add_unit_arguments(parser, 'degrees')
+    add_unit_arguments(parser)
     parser.set_defaults(run=run)
 
 

@@ -14,6 +14,7 @@ import os
 from pathlib import Path
 import shutil
 import sys
+import textwrap
 from typing import Any, NamedTuple, TextIO, TypeAlias, TypeVar
 
 from sdf_pose_bridge.errors import SdfError, SdfWarning, UriLookupError
@@ -87,7 +88,21 @@ def discard_output() -> None:
 
 
 class CommandError(Exception):
-    """A command fails; the text is the reason."""
+    """A command fails; the arguments are the reason and the exit code."""
+
+    def __init__(self, reason: str, exit_code: int = 1) -> None:
+        super().__init__(reason)
+        self.exit_code = exit_code
+
+
+def print_message(command: str | None, message: str) -> None:
+    """Print a sentence of a command to standard error; on a terminal words are not cut."""
+    text = f'{" ".join(filter(None, ("sdf_pose", command)))}: {printable(message)}'
+    if sys.stderr.isatty():
+        text = textwrap.fill(
+            text, shutil.get_terminal_size().columns, subsequent_indent='  ',
+            break_long_words=False, break_on_hyphens=False)
+    print(text, file=sys.stderr)
 
 
 def write_text(text: str, path: Path | None) -> None:
@@ -194,14 +209,13 @@ def argument_type(
     return value_from_text
 
 
-def add_unit_arguments(parser: argparse.ArgumentParser, default: str = 'radians') -> None:
-    """Add the arguments ``--degrees``, ``--radians`` and ``--mm``; ``default`` is for angles."""
-    units = {'degrees': DEGREES, 'radians': RADIANS}
-    for name, unit in units.items():
-        parser.add_argument(
-            f'--{name}', dest='angle_unit', action='store_const', const=unit,
-            default=units[default],
-            help=f'angles in {name}{", the default" if name == default else ""}')
+def add_unit_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments ``--degrees``, the default, ``--radians`` and ``--mm``."""
+    angles = parser.add_mutually_exclusive_group()
+    for unit in (DEGREES, RADIANS):
+        angles.add_argument(
+            f'--{unit.text}', dest='angle_unit', action='store_const', const=unit, default=DEGREES,
+            help=f'angles in {unit.text}{", the default" if unit == DEGREES else ""}')
     parser.add_argument(
         '--mm', dest='length_unit', action='store_const', const=MILLIMETRES, default=METRES,
         help='lengths in millimetres, not metres')

@@ -8,14 +8,10 @@ import argparse
 from functools import partial
 import sys
 
-from sdf_pose_bridge.cli.convert import (
+from sdf_pose_bridge.cli.given_poses import (
     add_given_unit_arguments,
-    format_argument,
-    format_in_given_units,
-    FORMATS,
     formats_help,
-    numbers_from_text,
-    question_about_unit,
+    PoseReader,
 )
 from sdf_pose_bridge.cli.loading import (
     add_file_arguments,
@@ -24,8 +20,9 @@ from sdf_pose_bridge.cli.loading import (
     scene_of,
     STANDARD_INPUT,
 )
-from sdf_pose_bridge.cli.printing import CommandError, discard_output
+from sdf_pose_bridge.cli.printing import CommandError, discard_output, print_message
 from sdf_pose_bridge.geometry.formats import converted_poses, converted_rotations
+from sdf_pose_bridge.geometry.pose_texts import FORMATS
 from sdf_pose_bridge.geometry.poses import Pose, pose_product
 from sdf_pose_bridge.names import listed, printable, scoped_name
 from sdf_pose_bridge.scene.comparison import names_of_moved
@@ -59,14 +56,13 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help='the frame in which the pose was measured; by default the world, or the implicit '
              'root of a model file')
     parser.add_argument(
-        '--format', metavar='FORMAT', type=format_argument, choices=FORMATS,
-        default='sdf_rpy',
-        help='format of the numbers; by default sdf_rpy: x y z roll pitch yaw in metres and '
-             'radians. With a format of rotations the position stays')
+        '--format', metavar='FORMAT',
+        help='format of the numbers; by default the one that the text names, or sdf_rpy: x y z '
+             'roll pitch yaw in metres and radians. With a format of rotations the position stays')
     add_given_unit_arguments(parser)
     parser.add_argument(
         '--force', action='store_true',
-        help='write numbers that look like degrees or millimetres as radians or metres')
+        help='write numbers that are probably in another unit, or no unit quaternion')
     parser.add_argument(
         '--dry-run', action='store_true', help='print the change without writing it')
     parser.add_argument(
@@ -80,12 +76,17 @@ def run(options: argparse.Namespace) -> int:
     if options.files[0] == STANDARD_INPUT:
         msg = 'the standard input cannot be changed; name a file'
         raise CommandError(msg)
-    source = format_in_given_units(FORMATS[options.format], options)
-    numbers = numbers_from_text(' '.join(options.numbers), source)
-    question = question_about_unit(source, numbers)
-    if question and not options.force:
-        msg = f'{question} --force writes them as they are'
-        raise CommandError(msg)
+    reader = PoseReader(options.format, options, FORMATS['sdf_rpy'])
+    numbers, source, notes = reader.read(' '.join(options.numbers))
+    for note in notes:
+        print_message(options.command, note)
+    convert, common = (
+        (converted_poses, 'sdf_quat_xyzw') if source.position
+        else (converted_rotations, 'quaternion'))
+    given = convert(numbers, source, common).tolist()
+    doubt = source.doubt(numbers, is_written=True)
+    if doubt and not options.force:
+        raise CommandError(doubt.question('--', '--force writes them as they are'))
     scene = scene_of(options.files[0], options)
 
     def measured(scene: Scene, element: int) -> Pose:
@@ -97,11 +98,8 @@ def run(options: argparse.Namespace) -> int:
     part = options.by or options.frame
     if options.by and scene.has(scoped_name(own_name, options.by)):
         part = scoped_name(own_name, options.by)
-    if source.position:
-        asked = Pose(*converted_poses(numbers, source, 'sdf_quat_xyzw').tolist())
-    else:
-        quat_xyzw = converted_rotations(numbers, source, 'quaternion').tolist()
-        asked = Pose(*lookup.pose(part, options.relative_to).pose[:3], *quat_xyzw)
+    position = () if source.position else lookup.pose(part, options.relative_to).pose[:3]
+    asked = Pose(*position, *given)
     change = pose_change(
         scene, element, pose_product(asked, lookup.pose_of_element(element, part)), measured,
         partial(scene_from_file, options.files[0], options), all_instances=options.all_instances)

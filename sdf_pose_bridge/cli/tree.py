@@ -51,7 +51,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help='print elements as they are nested in the file, of all kinds unless --kinds is '
              'given, with poses in the frames that they are relative to')
     add_frame_arguments(parser)
-    add_unit_arguments(parser, 'degrees')
+    add_unit_arguments(parser)
     parser.add_argument(
         '--depth', metavar='N', default=math.inf,
         type=argument_type(int, lambda depth: depth >= 0, 'is not a number of levels'),

@@ -76,7 +76,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add_file_arguments(parser, takes_many=False)
     add_output_argument(parser, _FORMATS, 'a page for .html, or a picture for .png')
     add_frame_arguments(parser)
-    add_unit_arguments(parser, 'degrees')
+    add_unit_arguments(parser)
     parser.add_argument(
         '--port', default=_PORT, metavar='N',
         type=argument_type(int, lambda port: 0 <= port < 2 ** 16, 'is not a port, 0 to 65535'),

@@ -4,25 +4,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 import enum
-import math
 from typing import NamedTuple
 
-import numpy as np
-
-from sdf_pose_bridge.geometry.formats import ROTATION_FORMATS, UnitDoubt
-from sdf_pose_bridge.geometry.formulas import degrees_from_radians, radians_from_degrees
+from sdf_pose_bridge.geometry.formats import converted_rotations, ROTATION_FORMATS
 from sdf_pose_bridge.geometry.rotations import (
-    canonical_quaternion,
     near_gimbal_lock,
     Quaternion,
-    quaternion_from_rpy,
     RotationError,
-    rpy_from_quaternion,
     Triple,
 )
-from sdf_pose_bridge.geometry.sequences import ZYX
+from sdf_pose_bridge.geometry.units import Doubt
 
 
 class RotationForm(enum.IntEnum):
@@ -44,8 +36,8 @@ class RotationAnswer(NamedTuple):
     """x, y, z, w; unit, w >= 0."""
     gimbal_lock: bool
     """Whether pitch is within 4.5e-8 of a right angle, where roll and yaw alone are uncertain."""
-    doubt: UnitDoubt | None
-    """Why the given angles are probably in degrees, though they are said to be in radians."""
+    doubt: Doubt | None
+    """Why the given angles are probably in another unit."""
 
 
 def converted_rotation(
@@ -61,32 +53,23 @@ def converted_rotation(
     :param degrees: True if the angles, given and returned, are in degrees.
     :return: roll and yaw within a half turn, pitch within a right angle, yaw 0 at gimbal lock; the
         canonical quaternion. Angles in these ranges keep their digits.
-    :raises RotationError: an unknown value of ``given``, a value of the other representation,
-        numbers that are not finite, or a quaternion of zeros.
+    :raises RotationError: an unknown value of ``given``, or a value of the other representation.
+    :raises PoseFormatError: numbers that are not finite, or a quaternion of zeros.
     """
     _check_unused(given, rpy, quat_xyzw)
-    doubt = None
+    angles = ROTATION_FORMATS['rpy_degrees' if degrees else 'rpy']
     if given == RotationForm.RPY:
-        rpy_rad: Sequence[float] = rpy
-        # Angles that are not finite are not changed: the error shows them as they are given.
-        if degrees and all(map(math.isfinite, rpy)):
-            rpy_rad = radians_from_degrees(np.array(rpy)).tolist()
-        quat = quaternion_from_rpy(rpy_rad)
-        doubt = None if degrees else ROTATION_FORMATS['rpy'].doubt(rpy)
+        source, values = angles, [*rpy]
     elif given == RotationForm.QUATERNION:
-        quat = canonical_quaternion(quat_xyzw)
+        source, values = ROTATION_FORMATS['quaternion'], [*quat_xyzw]
     else:
         known = ', '.join(f'{value.value} ({value.name})' for value in RotationForm)
         msg = f'given is {given!r}, which is neither RPY nor quaternion; known are {known}'
         raise RotationError(msg)
-    if given == RotationForm.RPY and ZYX.are_canonical(rpy[::-1], 180.0 if degrees else math.pi):
-        roll, pitch, yaw = rpy
-    else:
-        roll, pitch, yaw = rpy_from_quaternion(quat)
-        if degrees:
-            roll, pitch, yaw = map(degrees_from_radians, (roll, pitch, yaw))
+    roll, pitch, yaw = converted_rotations(values, source, angles).tolist()
+    x, y, z, w = quat = converted_rotations(values, source, 'quaternion').tolist()
     return RotationAnswer(
-        (roll + 0.0, pitch + 0.0, yaw + 0.0), quat, near_gimbal_lock(quat), doubt)
+        (roll, pitch, yaw), (x, y, z, w), near_gimbal_lock(quat), source.doubt(values))
 
 
 def _check_unused(given: int, rpy: Triple, quat_xyzw: Quaternion) -> None:

@@ -15,13 +15,12 @@ All poses are poses of a child in its parent.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-import math
-import re
 from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
 
+from sdf_pose_bridge.geometry.format_names import near_formats
 from sdf_pose_bridge.geometry.formulas import degrees_from_radians, radians_from_degrees
 from sdf_pose_bridge.geometry.rotations import (
     canonical_quaternion,
@@ -33,37 +32,30 @@ from sdf_pose_bridge.geometry.rotations import (
     RotationError,
 )
 from sdf_pose_bridge.geometry.sequences import AngleSequence, XYZ, ZYX, ZYZ
-from sdf_pose_bridge.names import NameIndex
+from sdf_pose_bridge.geometry.units import (
+    are_unlikely,
+    DEGREES,
+    Doubt,
+    METRES,
+    MILLIMETRES,
+    RADIANS,
+    Unit,
+    UNLIKELY,
+)
+from sdf_pose_bridge.names import shortened
 
 LAST_ROW = (0.0, 0.0, 0.0, 1.0)
 """Last row of the 4 x 4 matrix of a pose, exactly; libfranka compares without a tolerance."""
 
-LARGEST_ANGLE_RAD = 2.5 * math.pi
-"""A larger angle is probably in degrees; one of a little more than a turn may be meant."""
-
-FAR_M = 100.0
-"""A position that is at least this far away is probably in millimetres."""
-
-METRES, MILLIMETRES, RADIANS, DEGREES = 1.0, 1000.0, math.pi, 180.0
-"""A metre in units of lengths, and a half turn in units of angles."""
-
-_ORDER_OR_UNIT = re.compile('[wxyz]{3,4}|rpy|ypr|row|col|deg|rad|mm')
+NORM_TOLERANCE = 0.01
+"""A quaternion that is written into a file has the length 1 within this."""
 
 
 class PoseFormatError(ValueError):
     """The values are not poses in the format; the message names the value and the rule."""
 
 
-class UnitDoubt(NamedTuple):
-    """Numbers are probably in another unit than their format has."""
-
-    reason: str
-    """A clause with the numbers and the unit of the format."""
-    likely_unit: str
-    """``degrees`` or ``mm``."""
-
-
-class Representation(NamedTuple):
+class Numbers(NamedTuple):
     """How numbers other than angles about axes represent a rotation."""
 
     quaternions_from_numbers: Callable[[Floats], Floats]
@@ -78,17 +70,17 @@ class Format(NamedTuple):
     """Name for users."""
     text: str
     """The values in their order, for people; with ``{length}`` and ``{angle}`` for units."""
-    rotation: AngleSequence | Representation
+    rotation: AngleSequence | Numbers
     """How the numbers of the rotation represent it."""
     columns: tuple[int, ...]
     """The indices of these numbers: angles in the order of the sequence, x y z w, or row after row
     of a matrix."""
-    half_turn: float = 0.0
-    """A half turn in the unit of angles; 0 if there are none."""
+    angle: Unit | None = None
+    """The unit of angles; None if there are none."""
     position: tuple[int, ...] = ()
     """The indices of x, y and z of a pose."""
-    metre: float = METRES
-    """A metre in the unit of the position."""
+    length: Unit = METRES
+    """The unit of the position."""
     last_row: tuple[int, ...] = ()
     """The indices of the last row of a matrix."""
     synonyms: tuple[str, ...] = ()
@@ -103,8 +95,12 @@ class Format(NamedTuple):
     def meaning(self) -> str:
         """The values in their order, with units, for people."""
         return self.text.format(
-            length='metres' if self.metre == METRES else 'millimetres',
-            angle='radians' if self.half_turn == RADIANS else 'degrees')
+            length=self.length.text, angle=self.angle.text if self.angle else '')
+
+    @property
+    def half_turn(self) -> float:
+        """A half turn in the unit of angles; 1 if there are none."""
+        return self.angle.half_turn if self.angle else 1.0
 
     @property
     def sequence(self) -> AngleSequence | None:
@@ -118,7 +114,7 @@ class Format(NamedTuple):
         :raises RotationError: if they are not rotations, or no matrices of poses.
         """
         numbers = rows[:, self.columns]
-        if self.half_turn == DEGREES:
+        if self.angle == DEGREES:
             numbers = radians_from_degrees(numbers) if self.sequence else np.radians(numbers)
         if not self.position:
             return self.rotation.quaternions_from_numbers(numbers)
@@ -130,35 +126,44 @@ class Format(NamedTuple):
                 f' and must be exactly {LAST_ROW}')
             raise RotationError(msg)
         quats = self.rotation.quaternions_from_numbers(numbers)
-        return np.concatenate((rows[:, self.position] / self.metre, quats), axis=1)
+        return np.concatenate((rows[:, self.position] / self.length.factor, quats), axis=1)
 
     def rows_from_common(self, common: Floats) -> Floats:
         """Convert the common representation to rows, shape (n, row_length)."""
         rows = np.empty((len(common), self.row_length))
         numbers = self.rotation.numbers_from_quaternions(common[:, -4:])
         rows[:, self.columns] = (
-            degrees_from_radians(numbers) if self.half_turn == DEGREES else numbers)
+            degrees_from_radians(numbers) if self.angle == DEGREES else numbers)
         if self.position:
-            rows[:, self.position] = common[:, :3] * self.metre
+            rows[:, self.position] = common[:, :3] * self.length.factor
             rows[:, self.last_row] = LAST_ROW[:len(self.last_row)]
         return rows
 
-    def doubt(self, values: Sequence[float] | Floats) -> UnitDoubt | None:
-        """Return why rows are probably in another unit than the format has, or None."""
+    def doubt(
+        self, values: Sequence[float] | Floats, *, is_written: bool = False,
+    ) -> Doubt | None:
+        """
+        Return why rows probably mean something else than this format says, or None.
+
+        :param values: finite numbers, shape (n * row_length,) or (n, row_length).
+        :param is_written: whether a file gets them, so that quaternions must be of unit length.
+        """
         rows = np.reshape(values, (-1, self.row_length))
-        if self.half_turn == RADIANS:
-            angles = rows[:, sorted(self.columns)]
-            is_large = (np.abs(angles) > LARGEST_ANGLE_RAD).any(axis=1)
-            if is_large.any():
-                shown = _shown(angles[np.argmax(is_large)].tolist())
-                return UnitDoubt(f'the angles {shown} are radians', 'degrees')
-        if self.metre == METRES and self.position:
-            xyz = rows[:, self.position]
-            is_far = (np.abs(xyz) >= FAR_M).any(axis=1)
-            if is_far.any():
-                shown = _shown(xyz[np.argmax(is_far)].tolist())
-                return UnitDoubt(f'the position {shown} is in metres', 'mm')
-        return None
+        numbers = rows[:, sorted(self.columns)]
+        reasons, likely_units = [], []
+        for clause, unit, part in (
+            ('the angles {} are {}', self.angle, numbers),
+            ('the position {} is in {}', self.length, rows[:, self.position]),
+        ):
+            if unit and (unlikely := part[are_unlikely(part, unit)]).size:
+                reasons.append(clause.format(_shown(unlikely[0]), unit.text))
+                likely_units.append(UNLIKELY[unit][-1])
+        if is_written and self.rotation is _QUATERNION:
+            norms = np.linalg.norm(numbers, axis=1)
+            far = np.flatnonzero(np.abs(norms - 1.0) > NORM_TOLERANCE).tolist()
+            reasons += [f'the quaternion {_shown(numbers[row])} has the length {norms[row]:g},'
+                        ' not 1' for row in far[:1]]
+        return Doubt(' and '.join(reasons), tuple(likely_units)) if reasons else None
 
 
 def converted_poses(
@@ -209,38 +214,32 @@ def without_rounding_errors(values: Floats, source: Format, target: Format) -> F
     shown: Floats = values.copy()
     is_same_sequence = source.sequence is not None and source.sequence is target.sequence
     if source is not target and not is_same_sequence:
-        largest = target.half_turn or 1.0
+        largest = target.half_turn
         is_error = np.abs(values) < 4.0 * np.finfo(float).eps * largest
         is_error[:, list(target.position)] = False
         shown[is_error] = 0.0
     return shown
 
 
-def format_from_name(name: str, formats: Mapping[str, Format], what: str) -> Format:
+def format_from_name(
+    name: str, formats: Mapping[str, Format], what: str = 'pose format',
+    all_names: str = 'docs/pose_formats.md',
+) -> Format:
     """
     Return the format with a name or synonym.
 
-    :param what: ``pose`` or ``rotation``, for the message.
-    :raises PoseFormatError: if there is none; the message has all names, and the nearest one that
-        has the same order and unit.
+    :param what: ``pose format`` or ``rotation format``, for the message.
+    :param all_names: the place of the list of formats, for the message.
+    :raises PoseFormatError: if there is none; the message has the nearest names.
     """
     for each in formats.values():
         if name == each.name or name in each.synonyms:
             return each
-    hint = _hint(str(name), formats)
-    msg = f'there is no {what} format {name!r}; known are {", ".join(formats)}{hint}'
+    names = {
+        name: each.name for each in formats.values() for name in (each.name, *each.synonyms)}
+    near = near_formats(str(name), names)
+    msg = f'no {what} {shortened(repr(name))}; {near}all: {all_names}'
     raise PoseFormatError(msg)
-
-
-def _hint(wanted: str, formats: Mapping[str, Format]) -> str:
-    """Return the end of a message with the nearest name, unless its order or unit is another."""
-    orders_and_units = set(_ORDER_OR_UNIT.findall(wanted))
-    kinds = {*wanted.split('_')} & {name.split('_')[0] for name in formats}
-    alike = {
-        name: each for each in formats.values() for name in (each.name, *each.synonyms)
-        if set(_ORDER_OR_UNIT.findall(name)) == orders_and_units and kinds <= {*name.split('_')}}
-    nearest = NameIndex(alike).nearest(wanted)
-    return f'; did you mean "{nearest}" ({alike[nearest].meaning})?' if nearest else ''
 
 
 def _converted(
@@ -251,7 +250,7 @@ def _converted(
     what: str,
 ) -> Floats:
     source, target = (
-        each if isinstance(each, Format) else format_from_name(each, formats, what)
+        each if isinstance(each, Format) else format_from_name(each, formats, f'{what} format')
         for each in (from_format, to_format))
     array = _array(values, source, what)
     rows = array.reshape(-1, source.row_length)
@@ -277,7 +276,7 @@ def _converted(
         for column, angle in zip(target.columns, angles, strict=True):
             kept = angle[are_canonical]
             result[are_canonical, column] = (
-                kept if target.half_turn == source.half_turn
+                kept if target.angle == source.angle
                 else kept * target.half_turn / source.half_turn)
     result += 0.0  # no negative zeros
     is_finite = np.isfinite(result)
@@ -312,15 +311,15 @@ def _array(values: object, source: Format, what: str) -> Floats:
     return array
 
 
-def _shown(numbers: Sequence[float]) -> str:
-    return ' '.join(f'{number:g}' for number in numbers)
+def _shown(numbers: Floats) -> str:
+    return ' '.join(f'{number:g}' for number in numbers.tolist())
 
 
 # The table
 
-_QUATERNION = Representation(canonical_quaternion, np.copy)
-_ROTATION_VECTOR = Representation(quaternion_from_rotation_vector, rotation_vector_from_quaternion)
-_MATRIX = Representation(
+_QUATERNION = Numbers(canonical_quaternion, np.copy)
+_ROTATION_VECTOR = Numbers(quaternion_from_rotation_vector, rotation_vector_from_quaternion)
+_MATRIX = Numbers(
     lambda rows: quaternion_from_matrix(rows.reshape(-1, 3, 3)),
     lambda quats: matrix_from_quaternion(quats).reshape(-1, 9))
 
@@ -336,10 +335,10 @@ def _turned(numbers: str, sequence: AngleSequence) -> Format:
     return Format('', f'{numbers} in {{angle}} ({sequence.name})', sequence, (0, 1, 2), DEGREES)
 
 
-def _pose(name: str, metre: float, rotation: Format, *synonyms: str) -> Format:
+def _pose(name: str, length: Unit, rotation: Format, *synonyms: str) -> Format:
     """Return a format with the numbers x y z of the position, and then those of a rotation."""
     return rotation._replace(
-        name=name, text=f'x y z in {{length}}, {rotation.text}', position=(0, 1, 2), metre=metre,
+        name=name, text=f'x y z in {{length}}, {rotation.text}', position=(0, 1, 2), length=length,
         columns=tuple(3 + column for column in rotation.columns), synonyms=synonyms)
 
 
@@ -358,21 +357,21 @@ _VECTOR = Format(
 
 ROTATION_FORMATS = _registry(
     _RPY._replace(synonyms=('rpy_radians',)),
-    _RPY._replace(name='rpy_degrees', half_turn=DEGREES, synonyms=('rpy_deg',)),
+    _RPY._replace(name='rpy_degrees', angle=DEGREES, synonyms=('rpy_deg',)),
     _YPR._replace(synonyms=('ypr_radians',)),
-    _YPR._replace(name='ypr_degrees', half_turn=DEGREES, synonyms=('ypr_deg',)),
+    _YPR._replace(name='ypr_degrees', angle=DEGREES, synonyms=('ypr_deg',)),
     _XYZW._replace(synonyms=('quaternion_xyzw', 'quat', 'quat_xyzw')),
     _WXYZ._replace(synonyms=('quat_wxyz',)),
     Format('matrix', '3 x 3 matrix row after row', _MATRIX, tuple(range(9))),
     _VECTOR._replace(synonyms=('rotvec', 'axis_angle')),
     _VECTOR._replace(
-        name='rotation_vector_degrees', half_turn=DEGREES, synonyms=('rotvec_degrees',)),
+        name='rotation_vector_degrees', angle=DEGREES, synonyms=('rotvec_degrees',)),
 )
 """All formats of rotations by name; their common representation has shape (n, 4)."""
 
 POSE_FORMATS = _registry(
     _pose('sdf_rpy', METRES, _RPY, 'sdf_rpy_radians'),
-    _pose('sdf_rpy_degrees', METRES, _RPY._replace(half_turn=DEGREES), 'sdf_rpy_deg'),
+    _pose('sdf_rpy_degrees', METRES, _RPY._replace(angle=DEGREES), 'sdf_rpy_deg'),
     _pose('sdf_quat_xyzw', METRES, _XYZW, 'sdf_quat'),
     Format(
         'matrix_row_major', '4 x 4 matrix row after row, in {length}', _MATRIX,

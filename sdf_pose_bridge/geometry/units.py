@@ -1,37 +1,51 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The numbers of a pose as people read and type them: texts in units, rounded."""
+"""Units of lengths and angles, numbers of a pose in them, and numbers that are in another one."""
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from sdf_pose_bridge.geometry.formats import PoseFormatError
+import numpy as np
+
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
-from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.geometry.rotations import Floats, rpy_from_quaternion
 
-TEXT_FORMATS = {
-    'urdf_origin': ('sdf_rpy', '<origin xyz="{} {} {}" rpy="{} {} {}"/>'),
-    'sdf_pose': ('sdf_rpy', '<pose>{} {} {} {} {} {}</pose>'),
-    'static_transform_publisher': (
-        'sdf_quat_xyzw', '--x {} --y {} --z {} --qx {} --qy {} --qz {} --qw {}'),
-}
-"""Texts for other programs: the format of their numbers, and the places of these."""
+LARGEST_ANGLE_RAD = 2.5 * math.pi
+"""A larger angle is probably in degrees; one of a little more than a turn may be meant."""
+
+FAR_M = 100.0
+"""A position that is at least this far away is probably in millimetres."""
 
 
 class Unit(NamedTuple):
     """A unit of lengths or angles, with the number of digits to show."""
 
     name: str
+    text: str
+    """The unit in sentences, and in options of commands."""
     factor: float
     """Number of these units in a metre or a radian."""
     digits: int
 
+    @property
+    def half_turn(self) -> float:
+        """A half turn in this unit of angles."""
+        return math.pi * self.factor
 
-METRES, MILLIMETRES = Unit('m', 1.0, 4), Unit('mm', 1000.0, 1)
-RADIANS, DEGREES = Unit('rad', 1.0, 4), Unit('deg', math.degrees(1.0), 2)
+
+METRES, MILLIMETRES = Unit('m', 'metres', 1.0, 4), Unit('mm', 'mm', 1000.0, 1)
+RADIANS = Unit('rad', 'radians', 1.0, 4)
+DEGREES = Unit('deg', 'degrees', math.degrees(1.0), 2)
+
+UNLIKELY = {
+    METRES: (FAR_M, math.inf, MILLIMETRES),
+    MILLIMETRES: (1e-3, 2.0, METRES),
+    RADIANS: (LARGEST_ANGLE_RAD, math.inf, DEGREES),
+    DEGREES: (0.5, 3.15, RADIANS),
+}
+"""A position or rotation is probably in the other unit if its largest number is in this range."""
 
 POSE_LABELS = ('x', 'y', 'z', 'roll', 'pitch', 'yaw')
 """Labels of the numbers of a pose."""
@@ -69,13 +83,27 @@ class Units(NamedTuple):
         return texts
 
 
-def number_from_text(text: str) -> float:
-    """Read a number; raise a PoseFormatError for another text."""
-    try:
-        if '_' in text or not text.isascii():
-            # float() accepts 1_000 and digits of all scripts; other readers of poses do not.
-            raise ValueError
-        return float(text)
-    except ValueError:
-        msg = f'{shortened(text)!r} is not a number'
-        raise PoseFormatError(msg) from None
+class Doubt(NamedTuple):
+    """Numbers probably mean something else than their format says."""
+
+    reason: str
+    """A clause with the numbers, and the unit or the rule of the format."""
+    likely_units: tuple[Unit, ...] = ()
+
+    def question(self, prefix: str = '', cure: str = '') -> str:
+        """
+        Return a question for people.
+
+        :param prefix: dashes, if the units are named as options of a command.
+        :param cure: a clause about accepting the numbers as they are.
+        """
+        units = ' '.join(prefix + unit.text for unit in self.likely_units)
+        question = f'; did you mean {units}?' if units else ';' if cure else ''
+        return f'{self.reason}{question} {cure}'.rstrip()
+
+
+def are_unlikely(rows: Floats, unit: Unit) -> Any:
+    """Return for each position or rotation, shape (n, count), if it is hardly in this unit."""
+    lower, upper, _ = UNLIKELY[unit]
+    largest = np.abs(rows).max(axis=1, initial=0.0)
+    return (lower <= largest) & (largest <= upper)

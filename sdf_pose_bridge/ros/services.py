@@ -109,7 +109,7 @@ def answer_to_convert_rotation(
     _fill(response.quaternion, answer.quat_xyzw)
     response.gimbal_lock = answer.gimbal_lock
     if answer.doubt:
-        response.message = f'{answer.doubt.reason}; did you mean degrees: true?'
+        response.message = answer.doubt.question()
 
 
 def answer_to_convert_poses(
@@ -121,9 +121,9 @@ def answer_to_convert_poses(
         raise PoseFormatError(msg)
     converted = converted_poses(
         np.asarray(request.values), request.from_format, request.to_format)
-    source = format_from_name(request.from_format, POSE_FORMATS, 'pose')
+    source = format_from_name(request.from_format, POSE_FORMATS)
     if doubt := source.doubt(request.values):
-        response.message = f'{doubt.reason}; did you mean {doubt.likely_unit}?'
+        response.message = doubt.question()
     # The message would check every element of anything but an array.array.
     response.values = array.array('d', converted.tobytes())
 
@@ -174,8 +174,8 @@ def _pose_from_request(request: SetPose.Request, loaded: LoadedScene) -> Pose:
         pose = Pose(*converted_poses(numbers, 'sdf_quat_xyzw', 'sdf_quat_xyzw').tolist())
     except PoseFormatError as error:
         raise PoseNotSetError(str(error), place) from error
-    if doubt := POSE_FORMATS['sdf_quat_xyzw'].doubt(pose):
-        msg = f'{doubt.reason}; is it in {doubt.likely_unit}? "sdf_pose set --force" writes it'
+    if doubt := POSE_FORMATS['sdf_quat_xyzw'].doubt(numbers, is_written=True):
+        msg = doubt.question(cure='"sdf_pose set --force" writes it')
         raise PoseNotSetError(msg, place)
     return pose
 

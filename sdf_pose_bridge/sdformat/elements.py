@@ -15,8 +15,8 @@ import numpy as np
 
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.geometry.chains import Indices
-from sdf_pose_bridge.geometry.formats import FAR_M
 from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.units import FAR_M
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.inertials import AutomaticInertial, Inertial

@@ -17,9 +17,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sdf_pose_bridge.geometry.formats import LARGEST_ANGLE_RAD
 from sdf_pose_bridge.geometry.poses import Pose, PoseArray
 from sdf_pose_bridge.geometry.rotations import Floats, quaternion_from_rpy, rpy_from_quaternion
+from sdf_pose_bridge.geometry.units import LARGEST_ANGLE_RAD
 from sdf_pose_bridge.sdformat.values import (
     boolean_from_text,
     doubt_about_numbers,

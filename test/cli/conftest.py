@@ -4,6 +4,7 @@
 
 import contextlib
 import fcntl
+import io
 import os
 from pathlib import Path
 import pty
@@ -90,4 +91,18 @@ def run_main(files, monkeypatch, capsys):
             os.close(before)
         out, err = capsys.readouterr()
         return SimpleNamespace(returncode=code, stdout=out, stderr=err)
+    return run
+
+
+@pytest.fixture
+def convert(capsys, monkeypatch):
+    """Run the command with arguments and lines; return exit code, output and errors."""
+    def run(*arguments, lines='', stdin=None):
+        monkeypatch.setattr('sys.stdin', stdin or io.StringIO(lines))
+        try:
+            code = main(['convert', *arguments])
+        except SystemExit as stop:
+            code = stop.code
+        out, err = capsys.readouterr()
+        return code, out, err
     return run

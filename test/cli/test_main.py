@@ -21,7 +21,7 @@ def test_without_a_command_all_are_listed_with_a_line_each(run_main):
     listed = re.findall(r'^    ([a-z]+) +\S.*$', done.stdout, re.MULTILINE)
     modules = (ROOT / 'sdf_pose_bridge/cli').glob('*.py')
     assert set(listed) == {module.stem for module in modules} - {
-        '__init__', 'loading', 'main', 'printing'}
+        '__init__', 'given_poses', 'loading', 'main', 'printing'}
 
 
 def test_version(sdf_pose_in_shell):

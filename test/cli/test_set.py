@@ -74,6 +74,21 @@ def test_a_rotation_leaves_the_position(set_pose, path):
     assert '<pose>1 2 3 0 0 1.570796327</pose>' in path.read_text()
 
 
+def test_a_quaternion_of_another_length_is_asked_about(set_pose, refused, path):
+    quat = ['f', '--format', 'sdf_quat_xyzw', *'0000', '0', '45', '1']
+    assert refused(*quat).endswith(
+        'the quaternion 0 0 45 1 has the length 45.0111, not 1; --force writes them as they are')
+    set_pose('--force', *quat)
+    assert '<pose>0 0 0 0 0 3.097' in path.read_text()
+
+
+def test_a_pasted_text_is_set(run_main, path):
+    done = run_main('set', 'good.sdf', 'f', 'p[0.1, 0, 0.3, 0, 0, 0.5]')
+    assert (done.returncode, done.stderr) == (
+        0, 'sdf_pose set: read as ur_pose: p[...] of Universal Robots\n')
+    assert '<pose>0.1 0 0.3 0 0 0.5</pose>' in path.read_text()
+
+
 @pytest.mark.parametrize(('numbers', 'option', 'written'), [
     ('0 0 0 0 0 90', '--degrees', '0 0 0 0 0 1.570796327'),
     ('300 0 0 0 0 0', '--mm', '0.3 0 0 0 0 0')])

@@ -15,8 +15,9 @@ import numpy as np
 from sdf_pose_bridge import Pose, Scene
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.geometry.formats import converted_poses
+from sdf_pose_bridge.geometry.pose_texts import TEXT_FORMATS
 from sdf_pose_bridge.geometry.poses import relative_pose
-from sdf_pose_bridge.geometry.units import POSE_LABELS, TEXT_FORMATS, Units
+from sdf_pose_bridge.geometry.units import POSE_LABELS, Units
 from sdf_pose_bridge.names import is_name_of_proxy, printable, quoted_names, SEPARATOR
 from sdf_pose_bridge.scene.pose_setting import place_of_pose
 from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT
@@ -73,7 +74,7 @@ def html_of_frame(shown: ShownScene, frame: int, reference: int, units: Units) -
     publisher = 'static_transform_publisher'
     copied = {
         'SDF': f'<pose{_relative_to(scene, element, other)}>{_text(rpy)}</pose>',
-        publisher: f'{TEXT_FORMATS[publisher][1].format(*quat)} ' + shlex.join(
+        publisher: f'{TEXT_FORMATS[publisher].template.format(*quat)} ' + shlex.join(
             ['--frame-id', ids[reference], '--child-frame-id', ids[frame]]),
         'x y z, quaternion x y z w': _text(quat),
         'Franka matrix': str(franka),

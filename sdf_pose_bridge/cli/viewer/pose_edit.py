@@ -16,9 +16,10 @@ from sdf_pose_bridge.cli.viewer.frame_texts import escaped, html_of_difference, 
 from sdf_pose_bridge.cli.viewer.server import Events
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.geometry.formats import converted_poses, POSE_FORMATS, PoseFormatError
+from sdf_pose_bridge.geometry.pose_texts import number_from_text
 from sdf_pose_bridge.geometry.poses import pose_product, relative_pose
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
-from sdf_pose_bridge.geometry.units import number_from_text, POSE_LABELS, Units
+from sdf_pose_bridge.geometry.units import POSE_LABELS, Units
 from sdf_pose_bridge.scene.pose_setting import Measure, PoseChange
 
 FindChange: TypeAlias = Callable[[Scene, int, Pose, Measure], PoseChange]
@@ -159,22 +160,22 @@ class PoseEdit:
             return
         reference, pose, units = self._shown_for
         at = relative_pose(reference, pose)
+        source = POSE_FORMATS['sdf_rpy']._replace(length=units.length, angle=units.angle)
         try:
             # Numbers that were not typed keep all their digits.
             values = [
-                exact if text == shown else number_from_text(text) / unit.factor
+                exact * unit.factor if text == shown else number_from_text(text)
                 for exact, text, shown, unit in zip(
                     (*at[:3], *rpy_from_quaternion(at[3:])), typed, self._texts, units.of_pose,
                     strict=True)]
             pose = pose_product(
-                reference, Pose(*converted_poses(values, 'sdf_rpy', 'sdf_quat_xyzw').tolist()))
+                reference, Pose(*converted_poses(values, source, 'sdf_quat_xyzw').tolist()))
         except PoseFormatError as error:
             self._refusal = str(error)
             return
         self._texts, self._shown_for = typed, (reference, pose, units)
-        doubt = POSE_FORMATS['sdf_rpy'].doubt(values)
-        self._take(
-            pose, *[f'{doubt.reason}; did you mean {doubt.likely_unit}?'] if doubt else ())
+        doubt = source.doubt(values)
+        self._take(pose, *[doubt.question()] if doubt else ())
 
     def _take_gizmo(self) -> None:
         if (pose := self._pose_of_gizmo) != self._placed:
