@@ -101,7 +101,7 @@ def test_both_representations_are_answered():
 def test_angles_that_look_like_degrees_are_asked_about():
     response = convert_rotation(rpy=(0.0, 0.0, 90.0))
     assert (response.success, response.message) == (
-        True, 'the angles 0 0 90 are radians; did you mean degrees: true?')
+        True, 'the angles 0 0 90 are radians; did you mean degrees?')
     assert convert_rotation(rpy=(0.0, 0.0, 90.0), degrees=True).message == ''
 
 
@@ -273,7 +273,8 @@ def test_a_dry_run_writes_nothing(ask, path):
     ('mark', (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), 'tol', 'did you mean "tool"'),
     ('mark', (np.nan, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), '', 'must be a finite number'),
     ('mark', (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0), '', 'is zero, which is not a rotation'),
-    ('mark', (300.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), '', 'is in metres; is it in mm?'),
+    ('mark', (300.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), '', 'is in metres; did you mean mm?'),
+    ('mark', (1.0, 0.0, 0.0), (0.0, 0.0, 45.0, 1.0), '', '0 0 45 1 has the length 45.0111, not 1'),
 ])
 def test_a_wrong_request_is_refused(ask, path, frame, xyz, quat_xyzw, frame_id, reason):
     with pytest.raises(SdfError, match=reason):
