@@ -243,7 +243,7 @@ class JointPositionError(SdfError, ValueError, code='JOINT_POSITION_INVALID'):
     """
 
 
-class UnknownFrameError(SdfError, LookupError, code='POSE_RELATIVE_TO_INVALID'):
+class UnknownFrameError(SdfError, LookupError, code='UNKNOWN_FRAME'):
     """A query names a frame that does not exist, or one of several with the same name."""
 
 

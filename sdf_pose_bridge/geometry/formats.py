@@ -390,10 +390,12 @@ POSE_FORMATS = _registry(
     _pose('staubli', MILLIMETRES, _turned('Rx Ry Rz', XYZ)),
     _pose('kawasaki_oat', MILLIMETRES, _turned('O A T', ZYZ), 'kawasaki'),
     _pose('doosan', MILLIMETRES, _turned('A B C', ZYZ)),
-    _pose('kinova', METRES, _fixed_xyz('theta_x theta_y theta_z')),
+    _pose('kinova_gen3', METRES, _fixed_xyz('theta_x theta_y theta_z'), 'kinova'),
+    _pose('kinova_jaco', METRES, _turned('ThetaX ThetaY ThetaZ', XYZ), 'kinova_mico'),
     _pose('mujoco', METRES, _WXYZ, 'sdf_quat_wxyz'),
     _pose('mitsubishi', MILLIMETRES, _fixed_xyz('A B C'), 'melfa'),
     _pose('denso', MILLIMETRES, _fixed_xyz('RX RY RZ')),
     _pose('epson_uvw', MILLIMETRES, _turned('U V W', ZYX), 'epson'),
+    _pose('ufactory', MILLIMETRES, _fixed_xyz('roll pitch yaw'), 'xarm'),
 )
 """All formats of poses by name; their common representation has shape (n, 7)."""

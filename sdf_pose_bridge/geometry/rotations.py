@@ -92,6 +92,10 @@ def _matrix_message(matrix: Matrix) -> str:
     rows = tuple(map(tuple, matrix))
     if not np.isfinite(matrix).all():
         return f'rotation matrix {rows} is not finite'
+    scale = float(np.cbrt(determinant(*matrix)))
+    if scale > 0.0 and all(abs(value - expected) <= _MATRIX_TOLERANCE for value, expected, _ in (
+            orthonormality(FLOATS, *(np.array(matrix) / scale).tolist()))):
+        return f'rotation matrix {rows} has the scale {scale:.6g}; divide it by that'
     for value, expected, name in orthonormality(FLOATS, *matrix):
         if not abs(value - expected) <= _MATRIX_TOLERANCE:
             return (

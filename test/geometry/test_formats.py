@@ -29,8 +29,9 @@ LENGTHS = {
     'sdf_rpy': 6, 'sdf_rpy_degrees': 6, 'sdf_quat_xyzw': 7,
     'matrix_row_major': 16, 'franka_matrix': 16, 'franka_measured': 6, 'ur_pose': 6,
     'ur_pendant': 6, 'kuka_abc': 6, 'abb': 7, 'fanuc_wpr': 6, 'yaskawa': 6, 'staubli': 6,
-    'kawasaki_oat': 6, 'doosan': 6, 'kinova': 6, 'mujoco': 7, 'mitsubishi': 6, 'denso': 6,
-    'epson_uvw': 6,
+    'kawasaki_oat': 6, 'doosan': 6, 'kinova_gen3': 6,
+    'kinova_jaco': 6, 'mujoco': 7, 'mitsubishi': 6, 'denso': 6,
+    'epson_uvw': 6, 'ufactory': 6,
 }
 IDENTITY_MATRIX = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 GOOD = {
@@ -172,12 +173,13 @@ def test_one_pose_in_all_formats(name):
         ),
     }
     same['mujoco'] = [*same['sdf_quat_xyzw'][:3], *np.roll(same['sdf_quat_xyzw'][3:], 1)]
-    same['kinova'] = same['sdf_rpy_degrees']
+    same['kinova_gen3'] = same['sdf_rpy_degrees']
+    same['kinova_jaco'] = (1, 2, 3, 0, 30, 90)
     for each, angles in (
         ('franka_measured', (30, 0, 90)), ('kuka_abc', (90, 0, 30)), ('fanuc_wpr', (30, 0, 90)),
         ('yaskawa', (30, 0, 90)), ('staubli', (0, 30, 90)), ('kawasaki_oat', (0, 30, 90)),
         ('doosan', (0, 30, 90)), ('mitsubishi', (30, 0, 90)), ('denso', (30, 0, 90)),
-        ('epson_uvw', (90, 0, 30)), ('ur_pendant', same['ur_pose'][3:]),
+        ('epson_uvw', (90, 0, 30)), ('ufactory', (30, 0, 90)), ('ur_pendant', same['ur_pose'][3:]),
         ('abb', same['mujoco'][3:]),
     ):
         same[each] = (1000, 2000, 3000, *angles)

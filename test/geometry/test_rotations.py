@@ -109,6 +109,8 @@ def test_wrong_shapes_of_arrays_are_errors(function, shape):
     ([[1, 2e-5, 0], [0, 1, 0], [0, 0, 1]], r'columns 0 and 1 have scalar product 2e-05'),
     ([[1e200, 0, 0], [0, 1, 0], [0, 0, 1]], 'not orthonormal: column 0 has norm inf'),
     ([[1, 0, 0], [0, 1, 0], [0, 0, -1]], 'determinant -1'),
+    ([[0, -1e-3, 0], [1e-3, 0, 0], [0, 0, 1e-3]], 'has the scale 0.001; divide it by that'),
+    ([[2, 0, 0], [0, 2, 0], [0, 0, 1]], 'column 0 has norm 2'),
     ([[0, 1, 0], [1, 0, 0], [0, 0, 1]], 'determinant -1'),
 ])
 def test_matrices_must_be_rotations(matrix, rule):

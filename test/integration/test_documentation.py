@@ -27,6 +27,7 @@ TESTED_ELSEWHERE = {
     'sdf_pose check --format github': 'test_printing.py compares annotations',
     'sdf_pose tree cell.sdf': 'test_readme.py compares the output',
     'sdf_pose check broken.sdf': 'test_readme.py compares the output',
+    'sdf_pose check cell.sdf': 'test_readme.py compares the output',
     'sdf_pose check --strict cell.sdf': 'test_readme.py compares the output',
     'make ': 'it is what runs the tests, or takes minutes',
 }
@@ -125,6 +126,9 @@ def shown_after(page, command):
     ('pose_formats.md', 'sdf_pose convert --from rpy_degrees --to quaternion 0 0 90'),
     ('pose_formats.md',
      'sdf_pose convert --from rpy_degrees --to rotation_vector_degrees 180 0 0'),
+    ('calibration.md', (
+        'sdf_pose convert --to sdf_rpy_degrees --digits 9 --from sdf_rpy_degrees 0 0 0 180 0 90'
+        ' --times sdf_rpy_degrees 1 2 -3 0 0 30 --times sdf_rpy_degrees 0 0 0 180 0 0')),
 ])
 def test_outputs(page, command, folder, capsys):
     main(shlex.split(command)[1:])

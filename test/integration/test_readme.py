@@ -19,6 +19,7 @@ ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / 'README.md').read_text(encoding='utf-8')
 ROS_INTERFACE = (ROOT / 'docs/ros_interface.md').read_text(encoding='utf-8')
 COMMAND_LINE = (ROOT / 'docs/command_line.md').read_text(encoding='utf-8')
+ERRORS = (ROOT / 'docs/errors.md').read_text(encoding='utf-8')
 BROKEN = """\
 <sdf version="1.10">
   <model name="gripper">
@@ -113,7 +114,7 @@ def test_errors(start_bridge, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     main(['check', 'broken.sdf'])
     (line,) = capsys.readouterr().out.splitlines()
-    assert shown_after('$ sdf_pose check broken.sdf')[0] == line
+    assert shown_after('$ sdf_pose check broken.sdf', ERRORS)[0] == line
     bridge = start_bridge('--ros-args', '-p', 'sdf_file:=broken.sdf')
     assert bridge.wait_for_end() == 1
     assert bridge.lines[0].endswith(f'/{line}')
@@ -133,6 +134,9 @@ def test_the_first_file(tmp_path, monkeypatch, capsys):
     assert main(['tree', 'cell.sdf']) == 0
     printed = capsys.readouterr().out.splitlines()
     assert shown_after('$ sdf_pose tree cell.sdf')[:len(printed)] == printed
+    (tmp_path / 'cell.sdf').write_text(sdf.replace('"table::corner', '"table::cornor'))
+    assert main(['check', 'cell.sdf']) == 1
+    assert shown_after('$ sdf_pose check cell.sdf')[:1] == capsys.readouterr().out.splitlines()
 
 
 def test_warnings(tmp_path, monkeypatch, capsys):

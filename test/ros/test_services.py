@@ -77,8 +77,8 @@ def test_a_bad_rotation_is_refused_with_the_value(request_fields, word):
 
 
 @pytest.mark.parametrize(('request_fields', 'word'), [
-    ({'values': [0.0] * 6, 'from_format': 'rpy'}, 'sdf_rpy_degrees'),
-    ({'values': [0.0] * 6, 'to_format': ''}, 'franka_matrix'),
+    ({'values': [0.0] * 6, 'from_format': 'rpy'}, 'near: sdf_rpy'),
+    ({'values': [0.0] * 6, 'to_format': ''}, 'all: docs/pose_formats.md'),
     ({'values': [0.0] * 7}, '7'),
 ])
 def test_bad_poses_are_refused_with_the_rule(request_fields, word):

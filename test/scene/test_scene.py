@@ -52,7 +52,7 @@ def test_unknown_name_is_refused(scene, name):
     with pytest.raises(UnknownFrameError) as caught:
         scene.pose(name)
     assert f'"{name}"' in caught.value.message
-    assert caught.value.code == 'POSE_RELATIVE_TO_INVALID'
+    assert caught.value.code == 'UNKNOWN_FRAME'
 
 
 def test_unknown_reference_is_refused_with_the_file_and_a_hint(scene):
