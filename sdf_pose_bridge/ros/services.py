@@ -22,15 +22,16 @@ from sdf_pose_bridge.errors import (
     SdfError,
     UnknownFrameError,
 )
-from sdf_pose_bridge.geometry.converted_rotation import converted_rotation
 from sdf_pose_bridge.geometry.formats import (
     converted_poses,
+    converted_rotations,
     format_from_name,
     POSE_FORMATS,
     PoseFormatError,
+    ROTATION_FORMATS,
 )
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.rotations import RotationError
+from sdf_pose_bridge.geometry.rotations import near_gimbal_lock, RotationError
 from sdf_pose_bridge.ros.background import Worker
 from sdf_pose_bridge.ros.log_lines import text_about_defect
 from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadedScene
@@ -42,6 +43,9 @@ if TYPE_CHECKING:
 
 Answer: TypeAlias = Callable[[Any, Any], None]
 """Fills the response to a request."""
+
+_UNSET = ((0.0,) * 3, (0.0, 0.0, 0.0, 1.0), (0.0,) * 4)
+"""Angles and quaternions that a request does not set."""
 
 REFUSALS = (RotationError, PoseFormatError, UnknownFrameError, JointPositionError)
 """Exceptions about requests that are not valid."""
@@ -101,15 +105,27 @@ def add_services(node: Node, lookup: Callable[[], Awaitable[PoseLookup]]) -> Non
 def answer_to_convert_rotation(
     request: ConvertRotation.Request, response: ConvertRotation.Response,
 ) -> None:
-    """Convert one rotation."""
-    answer = converted_rotation(
-        request.given, _numbers(request.rpy, 'xyz'), _numbers(request.quaternion, 'xyzw'),
-        degrees=request.degrees)
-    _fill(response.rpy, answer.rpy)
-    _fill(response.quaternion, answer.quat_xyzw)
-    response.gimbal_lock = answer.gimbal_lock
-    if answer.doubt:
-        response.message = answer.doubt.question()
+    """Convert one rotation, unless a value is in the field that would be ignored."""
+    angles = ROTATION_FORMATS['rpy_degrees' if request.degrees else 'rpy']
+    fields = {
+        ConvertRotation.Request.RPY: ('rpy', angles, _numbers(request.rpy, 'xyz')),
+        ConvertRotation.Request.QUATERNION: (
+            'quaternion', ROTATION_FORMATS['quaternion'], _numbers(request.quaternion, 'xyzw'))}
+    if request.given not in fields:
+        msg = f'given is {request.given}, and must be 0 (RPY) or 1 (QUATERNION)'
+        raise RotationError(msg)
+    name, source, values = fields[request.given]
+    other, _, ignored = fields[1 - request.given]
+    if ignored not in _UNSET:
+        msg = (f'given is {request.given} ({name}), but {other} is {ignored}; set given to'
+               f' {1 - request.given} ({other}), or leave that out')
+        raise RotationError(msg)
+    quat = converted_rotations(values, source, 'quaternion').tolist()
+    _fill(response.rpy, converted_rotations(values, source, angles).tolist())
+    _fill(response.quaternion, quat)
+    response.gimbal_lock = near_gimbal_lock(quat)
+    if doubt := source.doubt(values):
+        response.message = doubt.question()
 
 
 def answer_to_convert_poses(

@@ -167,14 +167,14 @@ def test_a_change_without_descriptors_is_read_once_there_are_some(start, file, l
 FAILING = """
 import _testcapi, sys
 from pathlib import Path
-from sdf_pose_bridge.geometry import converted_rotation as rotations
+from sdf_pose_bridge.geometry import formats
 from sdf_pose_bridge.limited_process import Call
 from sdf_pose_bridge.ros.bridge import main
 
 def then_allocations_fail(function):
     def call(*arguments, **others):
         result = function(*arguments, **others)
-        if result and control.exists():
+        if result is not False and control.exists():
             first, last = map(int, control.read_text().split())
             control.unlink()
             _testcapi.set_nomemory(first, last)
@@ -183,7 +183,7 @@ def then_allocations_fail(function):
 
 control = Path(sys.argv.pop(1))
 Call.has_ended = then_allocations_fail(Call.has_ended)
-rotations.converted_rotation = then_allocations_fail(rotations.converted_rotation)
+formats.converted_rotations = then_allocations_fail(formats.converted_rotations)
 sys.exit(main())
 """
 """The node, in which some allocations fail after a file was read, or a rotation converted."""

@@ -68,7 +68,11 @@ def look_up(frame, relative_to=''):
     ({'given': 2}, '2'),
     ({'rpy': (0.0, math.nan, 0.0)}, 'nan'),
     ({'given': 1, 'quat_xyzw': (0.0, math.nan, 0.0, 1.0)}, 'nan'),
-    ({'quat_xyzw': (0.0, 0.0, 0.7, 0.7)}, 'given'),
+    ({'quat_xyzw': (0.0, 0.0, 0.7, 0.7)}, 'set given to 1 (quaternion)'),
+    ({'quat_xyzw': (0.0, 0.0, math.nan, 1.0)}, 'set given to 1'),
+    ({'given': 1, 'rpy': (0.0, 0.0, 1.0)}, 'set given to 0 (rpy)'),
+    ({'given': 1, 'rpy': (0.0, math.nan, 0.0)}, 'set given to 0'),
+    ({'given': 1, 'quat_xyzw': (0.0, 0.0, 0.0, 0.0)}, 'is zero, which is not a rotation'),
 ])
 def test_a_bad_rotation_is_refused_with_the_value(request_fields, word):
     response = convert_rotation(**request_fields)
@@ -113,8 +117,15 @@ def test_poses_in_another_unit_are_asked_about(values, message):
     assert (response.success, response.message) == (True, message)
 
 
-def test_gimbal_lock_is_reported():
-    assert convert_rotation(rpy=(0.0, math.pi / 2, 0.0)).gimbal_lock
+@pytest.mark.parametrize(('distance', 'expected'), [(0.0, True), (2e-8, True), (7e-8, False)])
+def test_gimbal_lock_is_reported_as_near_to_it_as_by_gz_math(distance, expected):
+    assert convert_rotation(
+        rpy=(0.1, math.pi / 2 - distance, 0.2)).gimbal_lock is expected
+
+
+def test_a_quaternion_of_zeros_is_unset():
+    response = convert_rotation(rpy=(0.0, 0.0, 1.0), quat_xyzw=(0.0, 0.0, 0.0, 0.0))
+    assert (response.success, response.rpy.z) == (True, 1.0)
 
 
 def test_no_poses_are_no_values():
