@@ -177,7 +177,7 @@ def _typed_pose(words: list[str], source: Format, *notes: str) -> TypedPose:
     """Return a pose; of a matrix whose digits are few, with the nearest rotation."""
     numbers, places = [*map(number_from_text, words)], list(source.columns)
     matrix = np.array(numbers)[places]
-    if len(places) == 9 and np.isfinite(matrix).all():
+    if len(places) == 9 and np.abs(matrix).max() < 2.0:
         # Small numbers have more digits behind the point in some programs.
         digits = max((-int(Decimal(words[place]).as_tuple().exponent) for place in places
                       if abs(numbers[place]) >= 0.1), default=0)
