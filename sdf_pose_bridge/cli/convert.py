@@ -20,6 +20,7 @@ from sdf_pose_bridge.cli.given_poses import (
     format_of_argument,
     formats_help,
     PoseReader,
+    poses_from_rows,
 )
 from sdf_pose_bridge.cli.printing import argument_type, CommandError, print_message
 from sdf_pose_bridge.geometry.formats import (
@@ -48,7 +49,8 @@ TEXTS_AT_A_TIME = 10_000
 _DIGITS_ON_TERMINAL = 12
 """Digits behind the decimal point; others are rounding errors, or not read by people."""
 
-_NAMES = {name for each in FORMATS.values() for name in (each.name, *each.synonyms)}
+_NAMES = {*TEXT_FORMATS, *(
+    name for each in FORMATS.values() for name in (each.name, *each.synonyms))}
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -186,19 +188,24 @@ class _Conversion:
     def _converted(self, source: Format, rows: Sequence[Sequence[float]]) -> list[str]:
         """Return, for each pose or rotation, a line for each format, with its name if several."""
         values, targets = np.array(rows), self._targets(source)
-        common = _common(values, source)
+        poses = poses_from_rows(values, source)
         if doubt := source.doubt(values):
             self._tell(doubt.question('--'))
+        for _, other in self._factors:
+            if bool(other.position) != bool(source.position):
+                msg = f'{source.name} cannot be multiplied with {other.name}: one is a rotation'
+                raise PoseFormatError(msg)
         if self._options.inverse or self._factors:
-            values = common = self._product(common)
+            poses = self._product(poses)
             source = FORMATS['sdf_quat_xyzw' if source.position else 'quaternion']
+            values = poses[:, -source.row_length:]
         convert = converted_poses if source.position else converted_rotations
         width, columns = max(len(target.name) for target in targets), []
         for target in targets:
             shown = without_rounding_errors(convert(values, source, target), source, target)
             title = f'{target.name:{width}}  ' if targets[1:] else ''
             columns.append([self._line(title, numbers) for numbers in shown.tolist()])
-        self._tell_lock(common, targets)
+        self._tell_lock(poses, targets)
         return list(map('\n'.join, zip(*columns, strict=True)))
 
     def _targets(self, source: Format) -> list[Format]:
@@ -211,33 +218,26 @@ class _Conversion:
             raise PoseFormatError(msg)
         return [self._target]
 
-    def _factor(self, option: str, words: Sequence[str]) -> Pose:
+    def _factor(self, option: str, words: Sequence[str]) -> tuple[Pose, Format]:
         """Read a pose to multiply with, in the format of ``--from`` if it has none of its own."""
-        source = self._reader.source
-        reader = PoseReader(None, self._options, source)
-        if words[0] in _NAMES or words[0] in TEXT_FORMATS:
+        reader = PoseReader(None, self._options, self._reader.source)
+        if words[0] in _NAMES:
             # The options of units are about the numbers of --from.
             no_units = argparse.Namespace(given_angle=None, given_length=None)
             reader, words = PoseReader(words[0], no_units), words[1:]
         typed = reader.read(' '.join(words))
-        if source is not None and bool(typed.format.position) != bool(source.position):
-            msg = (f'{source.name} cannot be multiplied with {typed.format.name}: one is a'
-                   ' rotation')
-            raise CommandError(msg)
-        common = _common(np.array([typed.numbers]), typed.format)
+        pose = Pose(*poses_from_rows([typed.numbers], typed.format)[0].tolist())
         self._tell(*typed.notes)
         if doubt := typed.format.doubt(typed.numbers):
             self._tell(doubt.question('--'))
-        pose = Pose(*_poses_from_common(common)[0].tolist())
-        return pose_inverse(pose) if option == '--times-inverse' else pose
+        return (pose_inverse(pose) if option == '--times-inverse' else pose), typed.format
 
-    def _product(self, common: Floats) -> Floats:
-        poses = _poses_from_common(common)
+    def _product(self, poses: Floats) -> Floats:
         if self._options.inverse:
             poses = relative_poses(poses, np.tile(Pose(), (len(poses), 1)))
-        for factor in self._factors:
+        for factor, _ in self._factors:
             poses = pose_products(poses, np.tile(factor, (len(poses), 1)))
-        return poses[:, -common.shape[1]:]
+        return poses
 
     def _line(self, title: str, numbers: Sequence[float]) -> str:
         digits = self._options.digits
@@ -254,10 +254,10 @@ class _Conversion:
             line, shutil.get_terminal_size().columns, subsequent_indent=' ' * len(title),
         )) if title and sys.stdout.isatty() else line
 
-    def _tell_lock(self, common: Floats, targets: Sequence[Format]) -> None:
+    def _tell_lock(self, poses: Floats, targets: Sequence[Format]) -> None:
         """Say that angles are near gimbal lock; of all formats, only of roll, pitch and yaw."""
         sequence = targets[0].sequence if len(targets) == 1 else ZYX
-        if sequence is not None and sequence.near_lock(common[:, -4:]).any():
+        if sequence is not None and sequence.near_lock(poses[:, 3:]).any():
             self._tell(
                 'near gimbal lock, where the first and the last angle '
                 f'({sequence.name}) turn about the same axis: each alone is uncertain, all three '
@@ -268,14 +268,3 @@ class _Conversion:
             if sentence not in self._told:
                 self._told.add(sentence)
                 print_message(self._options.command, sentence)
-
-
-def _poses_from_common(common: Floats) -> Floats:
-    """Return poses; those of rotations are at the origin."""
-    return np.pad(common, ((0, 0), (7 - common.shape[1], 0)))
-
-
-def _common(rows: Floats, source: Format) -> Floats:
-    if source.position:
-        return converted_poses(rows, source, 'sdf_quat_xyzw')
-    return converted_rotations(rows, source, 'quaternion')

@@ -5,10 +5,15 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 import textwrap
+
+import numpy as np
 
 from sdf_pose_bridge.cli.printing import CommandError
 from sdf_pose_bridge.geometry.formats import (
+    converted_poses,
+    converted_rotations,
     Format,
     format_from_name,
     POSE_FORMATS,
@@ -22,6 +27,8 @@ from sdf_pose_bridge.geometry.pose_texts import (
     typed_pose_from_text,
     TypedPose,
 )
+from sdf_pose_bridge.geometry.poses import PoseArray
+from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.geometry.units import DEGREES, METRES, MILLIMETRES, RADIANS
 
 
@@ -62,6 +69,13 @@ class PoseReader:
                 raise CommandError(msg)
         return source._replace(
             angle=angle or source.angle, length=length or source.length)
+
+
+def poses_from_rows(rows: Sequence[Sequence[float]] | Floats, source: Format) -> PoseArray:
+    """Convert rows to poses, those of rotations at the origin; may raise a PoseFormatError."""
+    if source.position:
+        return converted_poses(rows, source, 'sdf_quat_xyzw')
+    return np.pad(converted_rotations(rows, source, 'quaternion'), ((0, 0), (3, 0)))
 
 
 def format_of_argument(name: str) -> Format:

@@ -12,6 +12,7 @@ from sdf_pose_bridge.cli.given_poses import (
     add_given_unit_arguments,
     formats_help,
     PoseReader,
+    poses_from_rows,
 )
 from sdf_pose_bridge.cli.loading import (
     add_file_arguments,
@@ -21,7 +22,6 @@ from sdf_pose_bridge.cli.loading import (
     STANDARD_INPUT,
 )
 from sdf_pose_bridge.cli.printing import CommandError, discard_output, print_message
-from sdf_pose_bridge.geometry.formats import converted_poses, converted_rotations
 from sdf_pose_bridge.geometry.pose_texts import FORMATS
 from sdf_pose_bridge.geometry.poses import Pose, pose_product
 from sdf_pose_bridge.names import listed, printable, scoped_name
@@ -80,10 +80,7 @@ def run(options: argparse.Namespace) -> int:
     numbers, source, notes = reader.read(' '.join(options.numbers))
     for note in notes:
         print_message(options.command, note)
-    convert, common = (
-        (converted_poses, 'sdf_quat_xyzw') if source.position
-        else (converted_rotations, 'quaternion'))
-    given = convert(numbers, source, common).tolist()
+    given = Pose(*poses_from_rows([numbers], source)[0].tolist())
     doubt = source.doubt(numbers, is_written=True)
     if doubt and not options.force:
         raise CommandError(doubt.question('--', '--force writes them as they are'))
@@ -98,8 +95,8 @@ def run(options: argparse.Namespace) -> int:
     part = options.by or options.frame
     if options.by and scene.has(scoped_name(own_name, options.by)):
         part = scoped_name(own_name, options.by)
-    position = () if source.position else lookup.pose(part, options.relative_to).pose[:3]
-    asked = Pose(*position, *given)
+    placed = given if source.position else lookup.pose(part, options.relative_to).pose
+    asked = Pose(*placed[:3], *given[3:])
     change = pose_change(
         scene, element, pose_product(asked, lookup.pose_of_element(element, part)), measured,
         partial(scene_from_file, options.files[0], options), all_instances=options.all_instances)

@@ -156,9 +156,11 @@ def test_each_line_is_multiplied(convert):
 
 @pytest.mark.parametrize(('factor', 'message'), [
     ('1 2', 'sdf_rpy has 6 numbers'), ('rpy 0 0 0', 'cannot be multiplied with rpy'),
-    ('quat 0 0 0 0', 'cannot be multiplied with quaternion'), ('sdf_quat 0 0 0 0 0 0 0', 'zero')])
+    ('quat 0 0 0 1', 'cannot be multiplied with quaternion'), ('sdf_quat 0 0 0 0 0 0 0', 'zero')])
 def test_a_wrong_factor_is_an_error(convert, factor, message):
-    code, out, err = convert('--from', 'sdf_rpy', *'000000', '--times', *factor.split())
+    given = 'p[0, 0, 0, 0, 0, 0]' if factor.startswith('rpy') else '<pose>0 0 0 0 0 0</pose>'
+    source = [] if factor.startswith('rpy') else ['--from', 'sdf_rpy']
+    code, out, err = convert(*source, given, '--times', *factor.split())
     assert (code, out) == (1, '')
     assert message in err
 
