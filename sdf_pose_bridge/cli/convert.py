@@ -30,7 +30,6 @@ from sdf_pose_bridge.geometry.formats import (
     POSE_FORMATS,
     PoseFormatError,
     ROTATION_FORMATS,
-    without_rounding_errors,
 )
 from sdf_pose_bridge.geometry.pose_texts import (
     FORMATS,
@@ -268,3 +267,22 @@ class _Conversion:
             if sentence not in self._told:
                 self._told.add(sentence)
                 print_message(self._options.command, sentence)
+
+
+def without_rounding_errors(values: Floats, source: Format, target: Format) -> Floats:
+    """
+    Replace rounding errors of a conversion by zero, for people who read the numbers.
+
+    :param values: rows in the target format, shape (n, row_length).
+    :return: a copy in which numbers of a rotation are zero that are below four units of rounding
+        of the largest number; between formats with the same sequence of rotations, which are
+        exact, a copy.
+    """
+    shown: Floats = values.copy()
+    is_same_sequence = source.sequence is not None and source.sequence is target.sequence
+    if source is not target and not is_same_sequence:
+        largest = target.half_turn
+        is_error = np.abs(values) < 4.0 * np.finfo(float).eps * largest
+        is_error[:, list(target.position)] = False
+        shown[is_error] = 0.0
+    return shown

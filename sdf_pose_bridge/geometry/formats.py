@@ -15,12 +15,13 @@ All poses are poses of a child in its parent.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+import difflib
+import re
 from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
 
-from sdf_pose_bridge.geometry.format_names import near_formats
 from sdf_pose_bridge.geometry.formulas import degrees_from_radians, radians_from_degrees
 from sdf_pose_bridge.geometry.rotations import (
     canonical_quaternion,
@@ -46,6 +47,9 @@ from sdf_pose_bridge.names import shortened
 
 LAST_ROW = (0.0, 0.0, 0.0, 1.0)
 """Last row of the 4 x 4 matrix of a pose, exactly; libfranka compares without a tolerance."""
+
+_LONGEST_NAME, _MOST_NAMES = 40, 3
+_ORDER_OR_UNIT = re.compile('[wxyz]{3,4}|rpy|ypr|row|col|deg|rad|mm')
 
 NORM_TOLERANCE = 0.01
 """A quaternion that is written into a file has the length 1 within this."""
@@ -94,8 +98,7 @@ class Format(NamedTuple):
     @property
     def meaning(self) -> str:
         """The values in their order, with units, for people."""
-        return self.text.format(
-            length=self.length.text, angle=self.angle.text if self.angle else '')
+        return self.text.format(length=self.length.text, angle=self.angle and self.angle.text)
 
     @property
     def half_turn(self) -> float:
@@ -202,25 +205,6 @@ def converted_rotations(
     return _converted(values, from_format, to_format, ROTATION_FORMATS, 'rotation')
 
 
-def without_rounding_errors(values: Floats, source: Format, target: Format) -> Floats:
-    """
-    Replace rounding errors of a conversion by zero, for people who read the numbers.
-
-    :param values: rows in the target format, shape (n, row_length).
-    :return: a copy in which numbers of a rotation are zero that are below four units of rounding
-        of the largest number; between formats with the same sequence of rotations, which are
-        exact, a copy.
-    """
-    shown: Floats = values.copy()
-    is_same_sequence = source.sequence is not None and source.sequence is target.sequence
-    if source is not target and not is_same_sequence:
-        largest = target.half_turn
-        is_error = np.abs(values) < 4.0 * np.finfo(float).eps * largest
-        is_error[:, list(target.position)] = False
-        shown[is_error] = 0.0
-    return shown
-
-
 def format_from_name(
     name: str, formats: Mapping[str, Format], what: str = 'pose format',
     all_names: str = 'docs/pose_formats.md',
@@ -232,14 +216,30 @@ def format_from_name(
     :param all_names: the place of the list of formats, for the message.
     :raises PoseFormatError: if there is none; the message has the nearest names.
     """
-    for each in formats.values():
-        if name == each.name or name in each.synonyms:
-            return each
     names = {
-        name: each.name for each in formats.values() for name in (each.name, *each.synonyms)}
-    near = near_formats(str(name), names)
-    msg = f'no {what} {shortened(repr(name))}; {near}all: {all_names}'
+        synonym: each for each in formats.values() for synonym in (each.name, *each.synonyms)}
+    if str(name) in names:
+        return names[str(name)]
+    msg = f'no {what} {shortened(repr(name))}; {_nearest(str(name), names)}all: {all_names}'
     raise PoseFormatError(msg)
+
+
+def _nearest(wanted: str, names: Mapping[str, Format]) -> str:
+    """Return a part of a message with the nearest names, none of another order, unit or maker."""
+    wanted = wanted.lower()[:_LONGEST_NAME]
+    orders_and_units = _ORDER_OR_UNIT.findall(wanted)
+    makers = {*wanted.split('_')} & {name.split('_')[0] for name in names}
+    alike = [name for name in names if makers <= {*name.split('_')} and all(
+        any(each.startswith(part) for each in _ORDER_OR_UNIT.findall(name))
+        for part in orders_and_units)]
+    near = [name for name in alike if makers or wanted in name]
+    near += difflib.get_close_matches(wanted, alike)
+    if not near and (makers or orders_and_units):
+        return ''
+    shown: dict[str, str] = {}
+    for name in near or alike:
+        shown.setdefault(names[name].name, name)
+    return f'{"near" if near else "some"}: {", ".join([*shown.values()][:_MOST_NAMES])}; '
 
 
 def _converted(

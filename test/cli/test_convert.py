@@ -6,10 +6,17 @@ import io
 import math
 import sys
 
+import numpy as np
 import pytest
 
 from sdf_pose_bridge.cli import convert as convert_command
-from sdf_pose_bridge.geometry.formats import converted_poses, POSE_FORMATS, ROTATION_FORMATS
+from sdf_pose_bridge.cli.convert import without_rounding_errors
+from sdf_pose_bridge.geometry.formats import (
+    converted_poses,
+    converted_rotations,
+    POSE_FORMATS,
+    ROTATION_FORMATS,
+)
 
 
 def numbers(text):
@@ -229,6 +236,23 @@ def test_a_terminal_gets_short_numbers_and_whole_words(on_terminal):
         '  mean --mm?\n0.38 0 123.4567 0 0 90\n')
     listed = on_terminal(60, 'convert', '--from', 'sdf_rpy', *'100000')
     assert max(map(len, listed.splitlines())) <= 60
+
+
+def test_rounding_errors_are_zero_where_people_read_them():
+    source, target = POSE_FORMATS['sdf_rpy'], POSE_FORMATS['matrix_row_major']
+    rows = converted_poses([[1e-17, 0.0, 3.0, math.pi / 2, 0.0, 0.0]], source.name, target.name)
+    assert rows[0, 5] != 0.0
+    shown = without_rounding_errors(rows, source, target)
+    assert shown[0].tolist() == [
+        1.0, 0.0, 0.0, 1e-17, 0.0, 0.0, -1.0, 0.0, 0.0, 1.0, 0.0, 3.0, 0.0, 0.0, 0.0, 1.0]
+    assert rows[0, 5] != 0.0
+
+
+@pytest.mark.parametrize(('source', 'target'), [('rpy', 'rpy'), ('rpy', 'rpy_degrees')])
+def test_digits_that_a_conversion_keeps_are_shown(source, target):
+    formats = ROTATION_FORMATS[source], ROTATION_FORMATS[target]
+    rows = converted_rotations([[1e-20, 0.0, 1.0]], source, target)
+    assert np.array_equal(without_rounding_errors(rows, *formats), rows)
 
 
 def test_printed_numbers_are_read_back_exactly(convert):
