@@ -234,12 +234,11 @@ def _nearest(wanted: str, names: Mapping[str, Format]) -> str:
         for part in orders_and_units)]
     near = [name for name in alike if makers or wanted in name]
     near += difflib.get_close_matches(wanted, alike)
-    if not near and (makers or orders_and_units):
-        return ''
     shown: dict[str, str] = {}
-    for name in near or alike:
+    for name in near or (() if makers or orders_and_units else alike):
         shown.setdefault(names[name].name, name)
-    return f'{"near" if near else "some"}: {", ".join([*shown.values()][:_MOST_NAMES])}; '
+    word = 'near' if near else 'some'
+    return f'{word}: {", ".join([*shown.values()][:_MOST_NAMES])}; ' if shown else ''
 
 
 def _converted(
