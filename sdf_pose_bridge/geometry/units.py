@@ -47,6 +47,9 @@ UNLIKELY = {
 }
 """A position or rotation is probably in the other unit if its largest number is in this range."""
 
+_ROUND_DEG = 0.1
+"""Multiples of this are probably degrees, also if they are small."""
+
 POSE_LABELS = ('x', 'y', 'z', 'roll', 'pitch', 'yaw')
 """Labels of the numbers of a pose."""
 
@@ -106,4 +109,6 @@ def are_unlikely(rows: Floats, unit: Unit) -> Any:
     """Return for each position or rotation, shape (n, count), if it is hardly in this unit."""
     lower, upper, _ = UNLIKELY[unit]
     largest = np.abs(rows).max(axis=1, initial=0.0)
-    return (lower <= largest) & (largest <= upper)
+    steps = rows / _ROUND_DEG
+    is_round = (unit == DEGREES) & (np.abs(steps - steps.round()) < 1e-6).all(axis=1)
+    return (lower <= largest) & (largest <= upper) & ~is_round

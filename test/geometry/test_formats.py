@@ -304,7 +304,8 @@ def test_a_hint_has_the_order_and_the_unit_of_the_wrong_name(wrong, hint):
     ('matrix_row_major', (1, 0, 0, 0, 0, 1, 0, -100, 0, 0, 1, 0, 0, 0, 0, 1), 'mm'),
     ('sdf_rpy', (99, 2, 3, 0, 0, 7.8), ''), ('kuka_abc', (1197, 0, 0, 90, 0, 0), ''),
     ('kuka_abc', (0.3, 0, 1, 90, 0, 0), 'metres'), ('kuka_abc', (0, 0, 0, 1.57, 0, 3), 'radians'),
-    ('kuka_abc', (0, 0, 0, 0.4, 0, 0), ''), ('ur_pose', (300, 0, 0, 0, 90, 0), 'degrees mm'),
+    ('kuka_abc', (0, 0, 0, 0.42, 0, 0), ''), ('kuka_abc', (0, 0, 0, -1.2, 0, 0.5), ''),
+    ('ur_pose', (300, 0, 0, 0, 90, 0), 'degrees mm'),
     ('kuka_abc', (0.3, 0, 0, 1.57, 0, 0), 'radians metres')])
 def test_a_row_in_another_unit_is_doubted(name, row, likely_unit):
     identity = converted_poses((0, 0, 0, 0, 0, 0, 1), 'sdf_quat_xyzw', name)
