@@ -67,8 +67,7 @@ def scene_from_graph(
         poses=poses[is_kept],
         references=reindexed(graph.references),
         placements=kept({
-            model: new_index_of[frame] for model, frame in graph.placements.items()
-            if is_kept[frame]}),
+            model: new_index_of[frame] for model, frame in graph.placements.items()}),
         attachments=reindexed(graph.attachments),
         bodies=reindexed(graph.bodies),
         canonical_links=reindexed(graph.canonical_links),

@@ -284,6 +284,43 @@ def test_a_publish_that_fails_after_the_swap_of_scenes_ends_the_bridge(
     assert not [line for line in bridge.lines if 'is rejected' in line]
 
 
+TELLING = """
+import sys
+from sdf_pose_bridge.ros.scene_reader import SceneReader
+reader = SceneReader()
+from sdf_pose_bridge.ros.joint_states import JointStates
+from sdf_pose_bridge.ros.process import run
+from sdf_pose_bridge.ros.published_frames import PublishedFrames
+
+def told(function):
+    def call(*arguments):
+        function(*arguments)
+        print('has done', function.__name__, flush=True)
+    return call
+
+JointStates.follow = told(JointStates.follow)
+PublishedFrames.publish_tf_static = told(PublishedFrames.publish_tf_static)
+sys.exit(run(sys.argv, 'bridge', reader))
+"""
+"""The node, which tells when it follows the joints of a scene, and when it publishes a scene."""
+
+
+def test_the_joints_of_a_new_scene_are_followed_before_it_is_published(ros_domain, file):
+    file.write_text(ARM, encoding='utf-8')
+    bridge = LoggedProcess([
+        sys.executable, '-c', TELLING, '--ros-args', '-p', f'sdf_file:={file}',
+        '-p', 'use_joint_states:=true'])
+    try:
+        bridge.wait_for_line('has done follow')
+        replace(file, ARM.replace('upper', 'lower'))
+        bridge.wait_for_line('has done follow', 2)
+        bridge.wait_for_line('has done publish_tf_static', 2)
+        done = [line for line in bridge.lines if line.startswith('has done')]
+        assert done[-2:] == ['has done follow', 'has done publish_tf_static']
+    finally:
+        bridge.end()
+
+
 WITH_DEFECT = """
 import sys
 from sdf_pose_bridge.ros.scene_reader import SceneReader

@@ -11,6 +11,7 @@ from sdf_pose_bridge.tf.loaded_scene import LoadRequest
 from sdf_pose_bridge.tf.loading import files_behind_error, loaded_scene_from_request
 
 GOOD = '<sdf version="1.10"><model name="m"><link name="l"/></model></sdf>'
+BUSY, BROKEN = PassingReadError('busy', Place('a.sdf')), SdfError('broken', Place('a.sdf'))
 HALF, LONGER_HALF = GOOD[:40], '\n' + GOOD[:50]
 
 
@@ -98,9 +99,17 @@ def test_a_file_behind_an_error_is_followed(follower, tmp_path):
     assert not follower.has_to_read()
 
 
+def test_a_change_before_files_are_read_again_is_read_once(follower, file, monkeypatch):
+    monkeypatch.setattr(file_follower, 'RETRY_PERIOD_S', 0.0)
+    follower.retry_after(BUSY)
+    file.write_text(HALF, encoding='utf-8')
+    assert follower.has_to_read()
+    follower.retry_after(BROKEN)
+    assert not follower.has_to_read()
+
+
 @pytest.mark.parametrize(('error', 'is_retried'), [
-    (PassingReadError('busy', Place('a.sdf')), True),
-    (SdfError('broken', Place('a.sdf')), False), (ZeroDivisionError(), False)])
+    (BUSY, True), (BROKEN, False), (ZeroDivisionError(), False)])
 def test_files_are_read_again_soon_after_a_temporary_failure(
         follower, request_of_file, monkeypatch, error, is_retried):
     monkeypatch.setattr(file_follower, 'RETRY_PERIOD_S', 0.0)

@@ -198,6 +198,26 @@ def test_a_transform_is_published_if_it_is_newer_than_the_last_one(arm):
         (FIRST, {'upper'}), (FIRST + 1, {'upper'}), (FIRST + 2, {'upper'})]
 
 
+def test_frames_that_are_no_longer_followed_are_no_longer_published(arm):
+    order, has_begun, has_returned = [], threading.Event(), threading.Event()
+
+    def publish_tf(rows):
+        has_begun.set()
+        # Until both calls of the change wait for this thread, or the change has not waited.
+        wait_until(lambda: len(arm.states._calls) > 1 or has_returned.is_set())
+        order.append('published')
+        publish(rows)
+
+    publish, arm.frames.publish_tf = arm.frames.publish_tf, publish_tf
+    arm.send(FIRST, {'turn': 0.5})
+    arm.wait(has_begun.is_set)
+    arm.follow(arm.frames_of(), TOPICS, EACH)
+    order.append('followed')
+    has_returned.set()
+    arm.wait(lambda: len(order) == 2)
+    assert order == ['published', 'followed']
+
+
 def test_each_transform_has_its_own_last_stamp(arm):
     assert arm.published(
         (FIRST + 5, {'turn': 0.5}), (FIRST + 4, {'turn': 0.25, 'lift': 0.25}),

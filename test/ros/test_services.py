@@ -208,7 +208,8 @@ def test_large_requests_wait_in_the_middleware_until_it_is_their_turn(
         return await convert(request, response)
 
     service.callback = counted
-    client = caller.create_client(ConvertPoses, '/bridge/convert_poses')
+    client = caller.create_client(
+        ConvertPoses, '/bridge/convert_poses', qos_profile=services.SERVICE_QOS)
     other_client = caller.create_client(ConvertRotation, '/bridge/convert_rotation')
 
     def spin_until(condition):
@@ -216,7 +217,7 @@ def test_large_requests_wait_in_the_middleware_until_it_is_their_turn(
 
     spin_until(lambda: client.service_is_ready() and other_client.service_is_ready())
     request = ConvertPoses.Request(values=array.array('d', bytes(8 * services.FEW_NUMBERS + 8)))
-    futures = [client.call_async(request) for _ in range(3)]
+    futures = [client.call_async(request) for _ in range(30)]  # by default, ten would wait
 
     spin_until(lambda: taken)
     for _ in range(3):

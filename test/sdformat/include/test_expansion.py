@@ -180,6 +180,13 @@ def test_cycle_through_a_link_of_the_file_system_is_refused(tmp_path):
     assert 'includes itself' in error.message
 
 
+def test_cycle_through_a_linked_folder_is_refused(tmp_path):
+    write_files(tmp_path, a=model_file(LINK + include('same/a.sdf')))
+    (tmp_path / 'same').symlink_to('.')
+    (error,) = errors_of_file(tmp_path / 'a.sdf')
+    assert 'includes itself: a.sdf -> a.sdf' in error.message
+
+
 def write_chain(folder, count):
     """Write files of which each includes the next; return the first."""
     for number in range(count):

@@ -9,7 +9,7 @@ Where that differs from what ROS makes of a robot there are tests of both.
 import math
 
 import pytest
-from sdf_texts import errors_of_file, names_of, only_error, world_file
+from sdf_texts import errors_of_file, names_of, only_error, posed, world_file
 from urdf_texts import gazebo, joint, link, origin, robot, shape
 
 from sdf_pose_bridge import load, load_text
@@ -335,6 +335,13 @@ def test_all_of_gazebo_elements_is_left_out_where_that_is_not_enough():
     double = wrong.replace('imu', 'nose')
     scene = load_text(robot(TWO + FIXED + gazebo(double + '\n' + double, 'a')))
     assert not [name for name in scene.names if name.endswith('::s')]
+
+
+def test_all_of_gazebo_elements_is_left_out_where_one_was_needed_by_another():
+    frames = '<frame name="f"><pose>1</pose></frame>\n' + posed('frame', 'g', '', 'f')
+    scene = load_text(robot(TWO + FIXED + gazebo(frames) + '\n' + gazebo(SENSOR.format(''), 'a')))
+    assert scene.warnings[-1].message.endswith('so all of <gazebo> elements is left out')
+    assert not [name for name in scene.names if name.endswith(('::f', '::g', '::s'))]
 
 
 def test_an_error_outside_gazebo_elements_is_reported_once():
