@@ -36,7 +36,7 @@ _NUMBERS = re.compile(r'[\s\d.,;eE+\[\]-]+')
 _NAME = re.compile(r'\s*(?:- |At time\b|\w+:(?:\s|$))')
 _NUMBER_OR_LIST = re.compile(r'[-+.]?\d|[\[({<]|--\w')
 
-_MINUS = {0x2212: '-'}
+_MINUS = '\u2212'
 _FEWEST_DIGITS, _EXACT = 2, 1e-6
 """A matrix with fewer digits, or nearer to a rotation, is not changed."""
 
@@ -88,10 +88,10 @@ def typed_pose_from_text(
     :raises NoFormatError: if nothing says the format.
     :raises PoseFormatError: if the text is no pose in the format, or has decimal commas.
     """
-    text, begun = text.translate(_MINUS), None
+    text, begun = text.replace(_MINUS, '-'), None
     if _DECIMAL_COMMA.search(text):
         raise _decimal_commas(text)
-    for form in FORMS:
+    for form in () if _NUMBERS.fullmatch(text) and '[[' not in text else FORMS:
         found = re.search(form.pattern, text, re.DOTALL)
         if found is None or form_name not in ('', form.name):
             continue
@@ -125,7 +125,7 @@ def typed_pose_from_text(
 
 def number_from_text(text: str) -> float:
     """Read one number; raise a PoseFormatError for another text."""
-    word = text.translate(_MINUS)
+    word = text.replace(_MINUS, '-')
     try:
         if '_' in word or not word.isascii():
             # float() accepts 1_000 and digits of all scripts; other readers of poses do not.
@@ -176,8 +176,7 @@ def _row_count(text: str) -> int:
 def _typed_pose(words: list[str], source: Format, *notes: str) -> TypedPose:
     """Return a pose; of a matrix whose digits are few, with the nearest rotation."""
     numbers, places = [*map(number_from_text, words)], list(source.columns)
-    matrix = np.array(numbers)[places]
-    if len(places) == 9 and np.abs(matrix).max() < 2.0:
+    if len(places) == 9 and np.abs(matrix := np.array(numbers)[places]).max() < 2.0:
         # Small numbers have more digits behind the point in some programs.
         digits = max((-int(Decimal(words[place]).as_tuple().exponent) for place in places
                       if abs(numbers[place]) >= 0.1), default=0)
