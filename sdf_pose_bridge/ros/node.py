@@ -106,7 +106,7 @@ class SdfPoseBridge:
         self._publishing_diagnostics = Periodic(self._diagnostics.publish, PERIOD_S)
         self._looking = Periodic(self._look_at_files, LOOKING_PERIOD_S)
         self._looking_for_others = Periodic(
-            lambda: self._others.look(self._frames), OTHERS_PERIOD_S)
+            lambda: self._others.look(self._frames, self._loaded.scene), OTHERS_PERIOD_S)
         self._following_entities = Periodic(self._follow_entities, ENTITIES_PERIOD_S)
         self._publish(loaded, self._frames_from_scene(loaded, settings))
         result_from_executor(node, lambda: self._start_services(parameter_services))

@@ -22,10 +22,14 @@ from sdf_pose_bridge.ros.log_lines import names_in_line
 from sdf_pose_bridge.ros.published_frames import PublishedFrames, TF, TF_STATIC
 from sdf_pose_bridge.ros.publishers import Topic
 from sdf_pose_bridge.ros.wait_set import NoExecutor, take_message
+from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.tree import TfTree
 
 OTHERS_PERIOD_S = 1.0
 """Period in s of :meth:`OtherPublishers.look`."""
+
+TF_PERIOD_S = 30.0
+"""Time in s until it listens to ``/tf`` again, where a publisher may be silent at first."""
 
 _MOST_WAITING = 100
 """Largest number of messages that wait in a subscription, those of this node included; then new
@@ -37,7 +41,7 @@ _UNKNOWN_NODE = '_NODE_NAME_UNKNOWN_'
 
 class OtherPublishers:
     """
-    Listens to other publishers of ``/tf_static``, and for a period to new ones of ``/tf``.
+    Listens to other publishers of ``/tf_static``, and now and then to those of ``/tf``.
 
     There are subscriptions only while there are other publishers. The loader calls it.
     """
@@ -52,15 +56,19 @@ class OtherPublishers:
         self._last: tuple[set[bytes], TfTree] | None = None
         self._others: dict[Topic, list[str]] = {}
         self._parents: dict[str, str] = {}
+        # The parents that other nodes give frames of this one, in the order in which they came.
+        self._found: dict[Topic, dict[str, str]] = {}
         self._reported: set[tuple[str, str]] = set()
+        self._listens_to_tf_at = 0.0
 
-    def look(self, frames: PublishedFrames) -> None:
+    def look(self, frames: PublishedFrames, scene: Scene) -> None:
         """
         Read what has come since the last call, and look for other publishers.
 
         Of more messages than can be read in a short time, the others are not read.
 
         :param frames: the frames that this node publishes.
+        :param scene: their scene.
         """
         others: dict[Topic, list[str]] = {}
         gids: set[bytes] = set()
@@ -73,17 +81,25 @@ class OtherPublishers:
             names = Counter(names_of_nodes(found))
             names[self._node.get_fully_qualified_name()] -= own
             others[topic] = sorted(+names)
+        topics = [TF]
         if self._last == (gids, frames.tree):
             self._read(frames.publishers.static_stamps_ns)
-            self._close([TF])
-            return
-        # Listen again, as latched messages may be about other frames of this node.
-        self._last, self._others = (gids, frames.tree), others
-        self.problems.clear()
-        self._close([TF_STATIC, TF])
-        if any(others.values()):
-            self._parents = dict(zip(frames.tree.frame_ids, frames.tree.parent_ids, strict=True))
-        for topic in [each for each, names in others.items() if names]:
+            self._report(scene)
+            self._close(topics)
+            if time.monotonic() < self._listens_to_tf_at:
+                return
+        else:
+            # Listen again, as latched messages may be about other frames of this node.
+            topics.append(TF_STATIC)
+            self._last, self._others = (gids, frames.tree), others
+            self.problems.clear()
+            self._found = {each: {} for each in topics}
+            self._close(topics)
+            if any(others.values()):
+                self._parents = dict(
+                    zip(frames.tree.frame_ids, frames.tree.parent_ids, strict=True))
+        self._listens_to_tf_at = time.monotonic() + TF_PERIOD_S
+        for topic in [each for each in topics if others[each]]:
             with contextlib.suppress(RuntimeError):  # security may forbid it
                 self._subscriptions[topic] = result_from_executor(
                     self._node, partial(_subscription, self._node, topic))
@@ -107,7 +123,7 @@ class OtherPublishers:
     def _compare(
         self, topic: Topic, data: bytes, own_stamps_ns: Collection[int], ends_at: float,
     ) -> None:
-        """Report the first frame in a message of another node that this node publishes too."""
+        """Find the frames in a message of another node that this node publishes too."""
         for pose in poses_from_bytes(data, has_child=True, is_sequence=True):
             if time.monotonic() > ends_at:
                 return
@@ -115,19 +131,30 @@ class OtherPublishers:
             parent = self._parents.get(child)
             # On /tf, another node may give the same stamps to the same frames.
             is_own = topic is TF or pose.stamp_ns in own_stamps_ns
-            if not parent or (other == parent and is_own):
+            if parent and not (other == parent and is_own):
+                self._found[topic].setdefault(child, other)
+
+    def _report(self, scene: Scene) -> None:
+        """Report what was found."""
+        for topic, found in self._found.items():
+            keys = {(topic.name, child) for child in found}
+            if not found or (topic.name in self.problems and keys <= self._reported):
                 continue
-            names = self._others[topic]
-            line = (
-                f'frame {names_in_line([child])} is also published on {topic.name} by '
+            (first, other), names = next(iter(found.items())), self._others[topic]
+            in_file = [child for child in found if child in {
+                frame_id for each in scene.sensors.values()
+                for frame_id in (each.frame_id, each.optical_frame_id)}]
+            self.problems[topic.name] = line = (
+                f'frame {names_in_line([first])} is also published on {topic.name} by '
                 f'{"" if len(names) == 1 else "one of "}{names_in_line(names)}, with the parent '
-                f'{names_in_line([other])}, here with {names_in_line([parent])}; a frame must '
-                'have one publisher, so stop one of them, or set frame_prefix')
-            self.problems[topic.name] = line
-            if (topic.name, child) not in self._reported:
-                self._reported.add((topic.name, child))
+                f'{names_in_line([other])}, here with {names_in_line([self._parents[first]])}'
+                + (f', and so are {names_in_line([*found][1:])}' if found.keys() - {first} else '')
+                + '; a frame must have one publisher, so stop one of them, or set frame_prefix'
+                + (f'; for {names_in_line(in_file)}, set <gz_frame_id> of the sensor in the file '
+                   'to another name for each robot, as Gazebo knows no prefix' if in_file else ''))
+            if not keys <= self._reported:
                 self._node.get_logger().warning(line)
-            return
+                self._reported |= keys
 
 
 def publishers_of_topic(node: Node, topic: str) -> list[TopicEndpointInfo]:

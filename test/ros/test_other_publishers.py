@@ -21,7 +21,10 @@ from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 ROBOT = (
-    '<sdf version="1.11"><model name="m"><link name="base"/><frame name="tool"/></model></sdf>')
+    '<sdf version="1.11"><model name="m"><link name="base"/><frame name="tool"/>{}</model></sdf>')
+IMU = (
+    '<link name="l"><sensor name="s" type="imu"><gz_frame_id>imu_link</gz_frame_id></sensor>'
+    '</link>')
 LATCHED = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 SAME_PARENT = 'frame "tool" is also published on /tf_static by "/other", with the parent "m",'
 
@@ -37,19 +40,25 @@ class Looking:
         self.frames = None
         self._senders = {}
 
-    def publish(self, **options):
-        tree = tf_tree_from_scene(load_text(ROBOT), TfOptions(**options))
+    def publish(self, content='', **options):
+        self._scene = load_text(ROBOT.format(content))
+        tree = tf_tree_from_scene(self._scene, TfOptions(**options))
         self.frames = PublishedFrames(
             self._publishers, tree, None, {}, self.frames, has_transforms=False)
         self.frames.publish_tf_static()
 
     def send(self, child, parent, topic='/tf_static'):
+        self.send_all({child: parent}, topic)
+
+    def send_all(self, parents, topic='/tf_static'):
         if topic not in self._senders:
             self._senders[topic] = self.other.create_publisher(
                 TFMessage, topic, LATCHED if topic == '/tf_static' else 10)
-        transform = TransformStamped(child_frame_id=child)
-        transform.header.frame_id = parent
-        self._senders[topic].publish(TFMessage(transforms=[transform]))
+        message = TFMessage()
+        for child, parent in parents.items():
+            message.transforms.append(TransformStamped(child_frame_id=child))
+            message.transforms[-1].header.frame_id = parent
+        self._senders[topic].publish(message)
 
     def stop(self):
         for each in self._senders.values():
@@ -63,7 +72,7 @@ class Looking:
         wait_until(condition, step, lambda: self.found.problems)
 
     def look(self):
-        self._beside(self._executor, self.found.look, self.frames)
+        self._beside(self._executor, self.found.look, self.frames, self._scene)
         self._beside(self._executor, time.sleep, 0.1)
 
     @property
@@ -101,6 +110,27 @@ def test_a_frame_on_tf_is_reported_if_it_has_another_parent(looking):
     looking.look_until(
         lambda: looking.lines, between=lambda: looking.send('tool', 'map', '/tf'))
     assert looking.lines[0].startswith('frame "tool" is also published on /tf by "/other"')
+
+
+def test_a_publisher_that_is_silent_at_first_is_reported(looking, monkeypatch):
+    monkeypatch.setattr(other_publishers, 'TF_PERIOD_S', 0.3)
+    looking.send('elsewhere', 'map', '/tf')
+    looking.look_until(lambda: list(looking.node.subscriptions))
+    looking.look_until(lambda: not list(looking.node.subscriptions))
+    assert not looking.lines
+    looking.look_until(
+        lambda: looking.lines, between=lambda: looking.send('tool', 'map', '/tf'))
+
+
+def test_all_frames_are_reported_in_one_line_and_those_that_gazebo_names_with_a_cure(
+        looking, capfd):
+    looking.publish(IMU)
+    looking.send_all({'tool': 'odom', 'other': 'odom', 'imu_link': 'base_link'})
+    looking.look_until(lambda: looking.lines)
+    assert ', and so are "imu_link"; a frame must have one publisher' in looking.lines[0]
+    assert '; for "imu_link", set <gz_frame_id> of the sensor' in looking.lines[0]
+    looking.look()
+    assert capfd.readouterr().err.count('is also published') == 1
 
 
 def test_other_frames_and_the_own_ones_are_not_reported(looking):
