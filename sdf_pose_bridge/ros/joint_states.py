@@ -231,8 +231,7 @@ class JointStates:
         if has_ended:
             self._end_period()
         self._make_calls(call_count)
-        now = time.monotonic()
-        for function in [each for each, due in self._due.items() if due <= now]:
+        for function in [each for each, due in self._due.items() if due <= time.monotonic()]:
             del self._due[function]
             function()
 
@@ -259,7 +258,9 @@ class JointStates:
 
     def _start_frames(self) -> None:
         target = self._target
-        self._effects = Effects(target.frames, target.lookup, target.settings.model_pose_frames)
+        self._effects = Effects(
+            target.frames, target.lookup, target.settings.model_pose_frames,
+            target.settings.model_pose_placement)
         self._period.forget()
         now = time.monotonic()
         self._due[self._publish_all] = self._due[self._publish_at_rest] = now
@@ -348,7 +349,7 @@ class JointStates:
                 f'following {count} sources; the first message is on {source.name}')
         moved = target.frames.stamp(rows, stamp_ns, ignore_stamps=ignores_stamps)
         if len(rows) and not len(moved):
-            self._effects.note_lateness(effect, stamp_ns)
+            self._effects.note_lateness(effect, stamp_ns, self._now_ns)
         return moved
 
     # Publication
@@ -394,7 +395,6 @@ class JointStates:
 
     def _end_grace(self) -> None:
         """Report the joints and models that no message has named, once."""
-        line = line_about_unreported(self.unreported)
-        if line:
+        if line := line_about_unreported(self.unreported):
             self._has_reported_missing = True
             self._logger.info(line)

@@ -273,18 +273,28 @@ class Settings:
         [],
         'Topics of poses of models that move: PoseStamped, PoseWithCovarianceStamped, '
         'TransformStamped and Odometry, with {model} for each model; TFMessage names models in '
-        'its child frame ids. A pose is that of the model frame. {world} stands for the world.',
+        'its child frame ids. A pose is that of the model frame, or of the frame in the model '
+        'that the child frame id names. {world} stands for the world.',
         'names of topics, such as /vrpn_mocap/{model}/pose; at most 1000 of them, of at most 255 '
         'characters',
         optional_topic_patterns_setting,
     )
     model_pose_frames = Declaration(
         [],
-        'Frames in the headers of these messages that are the same as root_frame.',
+        'Frames in the headers of these messages that are the same as root_frame. Those of the '
+        'odometry that plugins of Gazebo in the file send are known without it.',
         'glob patterns for frame ids, such as */odom; at most 1000 patterns of at most 255 '
         'characters',
         # Compiled here, as look-ups wait for the thread that uses them.
         lambda values: [re.compile(translate(each)) for each in patterns_setting(values)],
+    )
+    model_pose_placement = Declaration(
+        '',
+        'The frame in each model that poses on these topics are of, such as the markers of a '
+        'tracker.',
+        'the name of a frame in the model, such as markers or arm::tool; the model frame if '
+        'empty, and for models without this frame',
+        str,
     )
     simulator = Declaration(
         '',

@@ -19,6 +19,7 @@ from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import hint_from_names, SEPARATOR
 from sdf_pose_bridge.ros.cdr import NANOSECONDS, StampedPose
 from sdf_pose_bridge.ros.log_lines import count_in_words, names_in_line
+from sdf_pose_bridge.ros.model_poses import messages_from_poses
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.setting_rules import MODEL_FIELD, MOST_CHARACTERS
 from sdf_pose_bridge.ros.state_messages import Effects, Message, StateSource
@@ -224,7 +225,7 @@ class Simulator(StateSource):
         begin_s = time.thread_time()
         poses = self._poses(self._answers.popleft(), effects)
         self._add_nested(poses, effects)
-        messages = self.messages_from_poses(poses.values(), effects)
+        messages = messages_from_poses(poses.values(), self, effects)
         self._cost_of_poses_s = time.thread_time() - begin_s
         return messages
 

@@ -8,7 +8,6 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-import math
 import re
 import time
 from typing import NamedTuple
@@ -19,9 +18,8 @@ from rclpy.node import Node
 from rclpy.subscription import Subscription
 
 from sdf_pose_bridge.geometry.poses import pose_products
-from sdf_pose_bridge.geometry.rotations import canonical_quaternion
-from sdf_pose_bridge.names import hint_from_names
-from sdf_pose_bridge.ros.cdr import LONGEST_READ_S, NANOSECONDS, SerializedNames, StampedPose
+from sdf_pose_bridge.names import scoped_name
+from sdf_pose_bridge.ros.cdr import NANOSECONDS, SerializedNames
 from sdf_pose_bridge.ros.log_lines import names_in_line, RareWarnings
 from sdf_pose_bridge.ros.message_counts import MessageCounts
 from sdf_pose_bridge.ros.other_publishers import names_of_nodes, publishers_of_topic
@@ -39,9 +37,6 @@ BYTES_OF_OBJECTS = 2_000
 
 _BYTES_OF_MODEL = 200
 """Size that is counted for each model of an effect, and for each frame id."""
-
-MOST_OFF_UNIT = 0.01
-"""Largest difference of the norm of a quaternion from 1; it is made 1."""
 
 LATE_S = 1.0
 """Time in s after which messages with old stamps are reported, if they still move nothing."""
@@ -83,6 +78,8 @@ class Message(NamedTuple):
     """Its stamp in nanoseconds; 0 if it has none."""
     frame_id: str = ''
     """The frame in which the poses of models are given; empty for the root frame."""
+    placed: str = ''
+    """The frame of a single model whose pose is given; empty for model frames."""
 
 
 class Lateness(NamedTuple):
@@ -152,55 +149,11 @@ class StateSource(RareWarnings):
                 f'{self.name} has values for {names_in_line(names)} that are not finite or '
                 f'beyond {LARGEST_POSITION:g}; the last ones are kept'))
 
-    def messages_from_poses(
-        self, poses: Iterable[StampedPose], effects: Effects, dof: int | None = None,
-    ) -> list[Message]:
-        """
-        Find the effects of poses; log those that cannot be used.
-
-        :param dof: the free model whose poses they are; None if their child frame ids name it.
-        """
-        # Poses in one frame with one stamp become one message.
-        groups: dict[tuple[int, str], dict[int, Sequence[float]]] = {}
-        unknown, others, carried, invalid = [], [], [], []
-        ends_at = time.monotonic() + LONGEST_READ_S
-        for pose in poses:
-            model = effects.models.get(pose.child_frame_id) if dof is None else dof
-            if model is None:
-                unknown.append(pose.child_frame_id)
-            elif (found := effects.pose_frame(pose.frame_id, ends_at)) is None:
-                pass  # there is time when the next message comes
-            elif found[0] is None:
-                others.append(pose.frame_id)
-            elif found[1] == model:
-                carried.append(pose.frame_id)
-            elif not abs(math.hypot(*pose.pose[3:]) - 1.0) <= MOST_OFF_UNIT:
-                invalid.append(pose.pose)
-            else:
-                groups.setdefault((pose.stamp_ns, found[0]), {})[model] = (
-                    *pose.pose[:3], *canonical_quaternion(pose.pose[3:]))
-        if unknown:
-            self.warn_once('models', unknown, lambda: (
-                f'{self.name} has poses of {names_in_line(unknown)}, which are ignored: no model '
-                'has this name, or it is static, or a joint connects it to another body'
-                f'{hint_from_names(unknown[0], effects.models)}'))
-        if others:
-            self.warn_once('frames', others, lambda: (
-                f'{self.name} has poses in {names_in_line(others)}, which are ignored: there is '
-                'no such frame; if it is the same as the root frame, name it in '
-                'model_pose_frames'))
-        if carried:
-            self.warn('frame', lambda: (
-                f'a pose from {self.name} is ignored: {names_in_line(carried[:1])} moves with the '
-                'model'))
-        if invalid:
-            self.warn('pose', lambda: (
-                f'a pose from {self.name} is ignored: {invalid[0]} has no quaternion of length 1'))
-        return [
-            Message(
-                effects.of_models(tuple(sorted(group)), self),
-                np.array([group[dof] for dof in sorted(group)]), stamp_ns, frame_id)
-            for (stamp_ns, frame_id), group in groups.items()]
+    def tell_of_root(self, frame_id: str) -> None:
+        """Log a frame that counts as the root frame by a parameter, the first time."""
+        self._logger.info(
+            f'{self.name} has poses in {names_in_line([frame_id])}, which counts as the root '
+            'frame by model_pose_frames; no plugin in the file says where it is', once=True)
 
 
 class Effects:
@@ -210,11 +163,12 @@ class Effects:
     :param frames: the frames that messages move.
     :param lookup: looks up frames in which poses of models are given.
     :param root_patterns: patterns of frame ids that mean the root frame.
+    :param placement: the name of a frame in each model that poses on topics are of.
     """
 
     def __init__(
         self, frames: PublishedMovingFrames, lookup: PoseLookup,
-        root_patterns: Sequence[re.Pattern[str]] = (),
+        root_patterns: Sequence[re.Pattern[str]] = (), placement: str = '',
     ) -> None:
         self.lookup = lookup
         self._positions = frames.positions
@@ -225,15 +179,33 @@ class Effects:
         self._effects: dict[tuple[StateSource, tuple[object, ...]], Effect] = {}
         tree, motion = frames.tree, frames.frames.motion
         self._roots = ('', tree.root_frame, tree.world)
-        count, scoped_names = len(motion.dofs), frames.positions.free_models
+        count, free_models = len(motion.dofs), frames.positions.free_models
+        self._scoped_names = dict(enumerate(free_models, count))
         ids = dict(zip(tree.elements.tolist(), tree.frame_ids, strict=True))
         self.models = frames.positions.others | {
-            each: dof for dof, scoped_name in enumerate(scoped_names, count)
+            each: dof for dof, scoped in self._scoped_names.items()
             for name in [motion.names[dof]]
-            for each in (name, scoped_name, ids.get(motion.elements[dof], name))}
+            for each in (name, scoped, ids.get(motion.elements[dof], name))}
         """The degrees of freedom of free models by their names and frame ids, and of others."""
-        self.only_model = count if len(scoped_names) == 1 else None
+        self.only_model = count if len(free_models) == 1 else None
         """The degree of freedom of the only free model; None if there is not exactly one."""
+        self.odometry = tree.odometry
+        self.placements = {
+            dof: frame for dof, name in self._scoped_names.items()
+            if placement and lookup.knows(frame := scoped_name(name, placement))}
+        """The frames that poses on topics are of, if not model frames, by the free models."""
+        doubted = [
+            frame_id for (_, frame_id), each in self.odometry.items()
+            if each.is_of_wheels and any(pattern.match(frame_id) for pattern in root_patterns)]
+        self.doubts: list[str] = []
+        """Warnings about parameters, for the first message."""
+        if doubted:
+            self.doubts.append(
+                f'model_pose_frames has no effect on {names_in_line(doubted)}: the odometry of '
+                'wheels counts from where the file puts the model')
+        if placement and not self.placements:
+            self.doubts.append(
+                f'model_pose_placement: no model that can move has {names_in_line([placement])}')
         self.last: dict[StateSource, Effect] = {}
         """The effect of the last message on each topic of joint states, as far as it is kept."""
         self._late: dict[StateSource, Lateness] = {}
@@ -281,19 +253,46 @@ class Effects:
             self._make_room(effect.rows.nbytes)
         return effect.rows
 
-    def pose_frame(self, frame_id: str, ends_at: float) -> tuple[str | None, int] | None:
+    def placed_frame(self, child: str, dof: int | None) -> tuple[int | None, str]:
+        """
+        Find the frame whose pose is given.
+
+        :param child: the child frame id of the pose; empty for none.
+        :param dof: the free model that it has to be in, if it is known; None for any.
+        :return: the free model that it moves with, or None if there is no such frame; and its
+            name, which is empty for the model frame.
+        """
+        model, name = self.models.get(child), ''
+        if model is None and child and self.lookup.knows(child):
+            model, name = self.lookup.first_dof(child), child
+            if model not in self._scoped_names:
+                return None, ''
+        if model is None:
+            model = dof
+        if model is None or dof not in (None, model):
+            return None, ''
+        return model, name
+
+    def pose_frame(
+        self, frame_id: str, ends_at: float, source: StateSource,
+    ) -> tuple[str | None, int] | None:
         """
         Look up a frame id in the header of a pose, and keep what is found.
 
         :param ends_at: the monotonic time in s from which nothing is looked up.
+        :param source: logs that a pattern makes it the root frame, if this is the first one.
         :return: the name of the frame, which is empty for the root frame, or None if there is no
             such frame; and its :meth:`PoseLookup.first_dof`. None if it was not looked up.
         """
         found = self._pose_frames.get(frame_id)
         if found is None and time.monotonic() < ends_at:
-            is_root = frame_id in self._roots or (len(frame_id) <= MOST_CHARACTERS and any(
-                pattern.match(frame_id) for pattern in self._root_patterns))
-            name = '' if is_root else frame_id if self.lookup.knows(frame_id) else None
+            name = frame_id if self.lookup.knows(frame_id) else None
+            if frame_id in self._roots:
+                name = ''
+            elif len(frame_id) <= MOST_CHARACTERS and any(
+                    pattern.match(frame_id) for pattern in self._root_patterns):
+                name = ''
+                source.tell_of_root(frame_id)
             found = name, self.lookup.first_dof(frame_id) if name else NO_DOF
             self._make_room(_BYTES_OF_MODEL + len(frame_id))
             self._pose_frames[frame_id] = found
@@ -303,18 +302,24 @@ class Effects:
         """
         Return the positions, or the poses in the root frame, that a message has.
 
-        :raises SdfError: if its poses are given in a frame whose pose is not known.
+        :raises SdfError: if its poses are given in a frame whose pose is not known, or of one.
         """
-        if not message.frame_id:
-            return message.values
-        return pose_products(np.array(self.lookup.pose(message.frame_id).pose), message.values)
+        values = message.values
+        if message.placed:
+            model = self._scoped_names[message.effect.selection.changed[0]]
+            values = pose_products(
+                values, np.array([self.lookup.pose(model, message.placed).pose]))
+        if message.frame_id:
+            values = pose_products(np.array(self.lookup.pose(message.frame_id).pose), values)
+        return values
 
-    def note_lateness(self, effect: Effect, stamp_ns: int) -> None:
+    def note_lateness(self, effect: Effect, stamp_ns: int, now_ns: int) -> None:
         """
         Report messages whose stamps are old, if nothing has moved their transforms for a time.
 
         :param effect: that of one that moves nothing.
         :param stamp_ns: its stamp, or the time of the node, in nanoseconds.
+        :param now_ns: the time of the node; 0 before the first message on ``/clock``.
         """
         source, now = effect.source, time.monotonic()
         stamps_ns = self._frames.last_stamps_ns(effect.rows)
@@ -328,14 +333,19 @@ class Effects:
                 f'messages from {source.name} move nothing, for example {names_in_line([first])}: '
                 f'their stamps are {(last_ns - stamp_ns) / NANOSECONDS:.3f} s older than the last '
                 'one; set the clock of the publisher, and restart this node if that stamp was '
-                'wrong, or set ignore_timestamp:=true')
+                'wrong, or set ignore_timestamp:=true') if now_ns else (
+                'messages move nothing, as their stamps have gone back; with use_sim_time, this '
+                'needs /clock, so play the bag with "ros2 bag play --clock"')
+            is_new = all(each.line != line for each in self._late.values())
             self._late[source] = Lateness(line, effect.rows[stamps_ns == last_ns], last_ns)
-            source.warn('stamps', lambda: line)
+            if is_new:
+                source.warn('stamps', lambda: line)
 
     def problems(self, sources: Iterable[StateSource]) -> list[str]:
         """Return a line for each source that moves nothing, and for publishers of one joint."""
         late = [each for each in sources if self._is_late(each)]
-        return [*(self._late[each].line for each in late), *self._lines_about_publishers]
+        lines = dict.fromkeys(self._late[each].line for each in late)
+        return [*lines, *self._lines_about_publishers]
 
     def _is_late(self, source: StateSource) -> bool:
         late = self._late.get(source)

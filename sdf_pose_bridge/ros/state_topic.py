@@ -17,6 +17,7 @@ from sensor_msgs.msg import JointState
 from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge.ros.cdr import joint_state_from_bytes, poses_from_bytes
+from sdf_pose_bridge.ros.model_poses import messages_from_poses
 from sdf_pose_bridge.ros.state_messages import Effects, Message, StateSource
 from sdf_pose_bridge.ros.wait_set import NoExecutor, take_message
 
@@ -106,9 +107,9 @@ class StateTopic(StateSource):
         poses = poses_from_bytes(
             data, has_child=pose_type.has_child, is_sequence=pose_type.is_sequence)
         if pose_type.is_sequence:
-            return self.messages_from_poses(poses, effects)
+            return messages_from_poses(poses, self, effects, None, effects.placements)
         dof = effects.models.get(self.model) if self.model else effects.only_model
         if dof is None:
             msg = 'no single model is meant; {model} in its entry of model_pose_topics names one'
             raise ValueError(msg)
-        return self.messages_from_poses(poses, effects, dof)
+        return messages_from_poses(poses, self, effects, dof, effects.placements)

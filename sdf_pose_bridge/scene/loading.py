@@ -46,6 +46,7 @@ def load(
     on_missing_include: MissingInclude | str = MissingInclude.ERROR,
     limits: Limits = DEFAULT_LIMITS,
     shapes: bool = False,
+    plugins: bool = False,
     texts: Mapping[str, bytes | str] | None = None,
 ) -> Scene:
     """
@@ -60,6 +61,7 @@ def load(
         :class:`~sdf_pose_bridge.limited_process.LimitedProcess` does.
     :param shapes: whether to also read the shapes of visuals and collisions, masses and moments of
         inertia, and the dynamics of joints.
+    :param plugins: whether to also read plugins.
     :param texts: texts to read instead of some files, by their paths as in ``Scene.files``, to try
         a change before it is written.
     :raises SdfError: if the file is not valid; its ``errors`` has all errors.
@@ -78,7 +80,9 @@ def load(
                     f'{error.message}; so {"this part" if document.gazebo_children else "all"} of '
                     '<gazebo> elements is left out', error.place, error.code, is_for_gazebo=True)
             try:
-                return _scene(document, sources, directories, on_missing_include, shapes=shapes)
+                return _scene(
+                    document, sources, directories, on_missing_include, shapes=shapes,
+                    plugins=plugins)
             except LoadError as error:
                 if not document.gazebo_children:
                     raise
@@ -102,6 +106,7 @@ def load_text(
     on_missing_include: MissingInclude | str = MissingInclude.ERROR,
     limits: Limits = DEFAULT_LIMITS,
     shapes: bool = False,
+    plugins: bool = False,
     texts: Mapping[str, bytes | str] | None = None,
 ) -> Scene:
     """
@@ -114,12 +119,12 @@ def load_text(
     """
     return load(
         name, resource_paths=resource_paths, on_missing_include=on_missing_include, limits=limits,
-        shapes=shapes, texts={name: text, **(texts or {})})
+        shapes=shapes, plugins=plugins, texts={name: text, **(texts or {})})
 
 
 def _scene(
     document: Document, sources: Sources, directories: Sequence[str],
-    on_missing_include: MissingInclude, *, shapes: bool,
+    on_missing_include: MissingInclude, *, shapes: bool, plugins: bool,
 ) -> Scene:
     for directory in directories:
         if not os.path.isdir(directory):  # noqa: PTH112
@@ -130,7 +135,7 @@ def _scene(
         resource_finder(directories), sources,
         skips_missing=on_missing_include is MissingInclude.SKIP,
         model_by_itself=lambda root: _model_by_itself(root, sources)).expand(document)
-    elements = elements_from_tree(document.root, sources, shapes=shapes)
+    elements = elements_from_tree(document.root, sources, shapes=shapes, plugins=plugins)
     graph = frame_graph_from_elements(elements, sources.problems)
     sources.problems.raise_errors()
     return scene_from_graph(

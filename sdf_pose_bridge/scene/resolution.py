@@ -83,6 +83,7 @@ def scene_from_graph(
             if isinstance(inertial, Inertial)}),
         has_shapes=elements.has_shapes,
         shapes=kept(elements.shapes),
+        plugins=kept(elements.plugins),
         urdf_texts=kept({
             model: details.urdf_texts for model, details in elements.models.items()
             if details.urdf_texts}),

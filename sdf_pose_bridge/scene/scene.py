@@ -22,6 +22,7 @@ from sdf_pose_bridge.sdformat.elements import SensorDetails
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.inertials import Inertial
 from sdf_pose_bridge.sdformat.joints import JointAxis
+from sdf_pose_bridge.sdformat.plugins import Plugin
 from sdf_pose_bridge.sdformat.shapes import Shape
 
 
@@ -109,6 +110,9 @@ class Scene(ReadOnly):
     """Whether the load read shapes."""
     shapes: Mapping[int, Shape]
     """The shapes of visuals and collisions, by index; empty unless the load read them."""
+    plugins: Mapping[int, tuple[Plugin, ...]]
+    """The plugins of worlds, models, sensors and other elements, by the index of the element;
+    empty unless the load read them."""
     urdf_texts: Mapping[int, tuple[str, ...]]
     """The XML of elements of URDF in models, by the indices of models."""
     lines: Indices

@@ -21,6 +21,7 @@ from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.inertials import AutomaticInertial, Inertial
 from sdf_pose_bridge.sdformat.joints import JointDetails
+from sdf_pose_bridge.sdformat.plugins import Plugin
 from sdf_pose_bridge.sdformat.poses import (
     pose_doubts,
     PoseFormat,
@@ -108,6 +109,8 @@ class Elements:
     """The shapes of visuals and collisions; empty unless they were requested."""
     inertials: Mapping[int, Inertial | AutomaticInertial] = field(default_factory=dict)
     """Without automatic ones that cannot be computed."""
+    plugins: Mapping[int, tuple[Plugin, ...]] = field(default_factory=dict)
+    """The plugins of elements of any kind; empty unless they were requested."""
     includes: Mapping[int, Place] = field(default_factory=dict)
     """The place of the ``<include>`` of each included element."""
     missing_includes: Mapping[int, Mapping[str, str]] = field(default_factory=dict)

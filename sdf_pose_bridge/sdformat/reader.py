@@ -35,6 +35,7 @@ from sdf_pose_bridge.sdformat.elements import (
 from sdf_pose_bridge.sdformat.grammar import Definition, definition_of, Item, Kind
 from sdf_pose_bridge.sdformat.inertials import inertial_from_element
 from sdf_pose_bridge.sdformat.joints import check_children_of_joint, joint_details_from_element
+from sdf_pose_bridge.sdformat.plugins import plugins_of
 from sdf_pose_bridge.sdformat.poses import (
     EULER_RPY,
     pose_format_of,
@@ -75,7 +76,9 @@ _CHECKS: Mapping[Definition, Callable[[XmlElement, Sources], None]] = {
 """Functions that check elements without a frame."""
 
 
-def elements_from_tree(root: XmlElement, sources: Sources, *, shapes: bool = False) -> Elements:
+def elements_from_tree(
+    root: XmlElement, sources: Sources, *, shapes: bool = False, plugins: bool = False,
+) -> Elements:
     """
     Read all elements with a pose.
 
@@ -84,13 +87,14 @@ def elements_from_tree(root: XmlElement, sources: Sources, *, shapes: bool = Fal
     :param sources: takes errors and warnings about structure, names, attributes and values;
         references are not looked up here.
     :param shapes: whether to read shapes, masses and the dynamics of joints.
+    :param plugins: whether to read plugins.
     :return: the elements. An element with an error is kept if possible, so that further errors are
         found and none only follows from the first.
     """
     sources = sources.of_unchanged_trees()
     if sources.may_hold_scoped_names:
         check_scoped_names(root, sources)
-    return _Reader(sources, sources.path(root), shapes=shapes).elements(root)
+    return _Reader(sources, sources.path(root), shapes=shapes, plugins=plugins).elements(root)
 
 
 def is_valid_element(xml: XmlElement, definition: Definition, sources: Sources) -> bool:
@@ -126,8 +130,11 @@ class _Scope(NamedTuple):
 
 class _Reader:
 
-    def __init__(self, sources: Sources, path: str = '', *, shapes: bool = False) -> None:
+    def __init__(
+        self, sources: Sources, path: str = '', *, shapes: bool = False, plugins: bool = False,
+    ) -> None:
         self._sources = sources
+        self._reads_plugins = plugins
         self._most_depth = sources.usage.limits.depth
         self._table = ElementsBuilder(sources.paths, has_shapes=shapes)
         self._parts_of_actors = ElementsBuilder(sources.paths)
@@ -271,6 +278,8 @@ class _Reader:
             details = details_from_element(xml)
             if details is not None:
                 table.details[field][index] = details
+        if self._reads_plugins and (found := plugins_of(xml)):
+            table.details['plugins'][index] = found
         if kind in _SCOPES or path != scope.path or origin.is_checked:
             scope = _Scope(
                 table, names, path, index if kind in _SCOPES else scope_element,

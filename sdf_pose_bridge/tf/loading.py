@@ -73,7 +73,8 @@ def loaded_scene_from_request(
     is_made_urdf = request.description_format is DescriptionFormat.URDF
     scene = load_text(
         text, path, resource_paths=request.resource_paths,
-        on_missing_include=request.on_missing_include, shapes=is_made_urdf, texts=texts)
+        on_missing_include=request.on_missing_include, shapes=is_made_urdf,
+        plugins=request.tf_options.follows_models, texts=texts)
     if request.model_name and scene.world_names:
         msg = 'model_name has no effect, because this is a world and not a file of one model'
         warnings += (SdfWarning('WARNING', msg, Place(path)),)

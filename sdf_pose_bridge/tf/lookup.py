@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sdf_pose_bridge.errors import JointPositionError, Place, UnknownFrameError
-from sdf_pose_bridge.geometry.chains import ends_from_pointers
+from sdf_pose_bridge.geometry.chains import ends_from_pointers, Indices
 from sdf_pose_bridge.geometry.poses import canonical_relative_pose, Pose
 from sdf_pose_bridge.names import NameIndex
 from sdf_pose_bridge.scene.scene import Scene
@@ -81,12 +81,17 @@ class PoseLookup:
         :return: its index, which is that of a free model if the frame moves with one; -1 for none,
             and if the name is unknown or ambiguous.
         """
-        moving = self._tree.moving
         with contextlib.suppress(UnknownFrameError):
-            if moving is not None:
-                last = moving.motion.last_dofs[self._found(frame).owner]
-                return int(np.append(ends_from_pointers(moving.motion.previous), NO_DOF)[last])
+            if self._tree.moving is not None:
+                return int(self._first_dofs[self._found(frame).owner])
         return NO_DOF
+
+    @cached_property
+    def _first_dofs(self) -> Indices:
+        assert self._tree.moving is not None
+        motion = self._tree.moving.motion
+        first: Indices = np.append(ends_from_pointers(motion.previous), NO_DOF)[motion.last_dofs]
+        return first
 
     def is_frame_id(self, name: str) -> bool:
         """Return whether a frame of TF other than the root frame has a name."""

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -34,6 +35,7 @@ from sdf_pose_bridge.tf.frames import (
     optical_frames_of_cameras,
 )
 from sdf_pose_bridge.tf.joint_motion import JointMotion, MovingFrames
+from sdf_pose_bridge.tf.odometry import Odometry, odometry_from_scene
 from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT, tf_parents_from_scene, TfParents
 
 DEFAULT_KINDS = frozenset({Kind.MODEL, Kind.LINK, Kind.FRAME, Kind.SENSOR})
@@ -106,6 +108,8 @@ class TfTree(ReadOnly):
     has one; or :data:`ROOT_IS_PARENT`, or :data:`NO_PARENT`."""
     moving: MovingFrames | None
     """The frames that joints and free models move; None if they follow no messages."""
+    odometry: Mapping[tuple[int, str], Odometry]
+    """The frames of odometry, as :func:`odometry_from_scene` finds them."""
     world: str
     """The name of the world that the frames belong to; empty for a model file."""
     warnings: tuple[SdfWarning, ...]
@@ -230,6 +234,7 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
         elements=np.where(np.arange(len(frames.ids)) < len(elements), frames.owners, -1),
         nearest_frames=nearest_frames,
         moving=moving,
+        odometry={} if motion is None else odometry_from_scene(scene, motion),
         world=scene.world_names.get(0, ''),
         warnings=problems.warnings,
     )

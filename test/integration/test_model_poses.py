@@ -141,6 +141,32 @@ def test_poses_in_a_frame_that_moves_follow_it(follow, tf, tracker, joints):
     assert (found.translation.y, found.translation.z) == pytest.approx((1.0, 2.0))
 
 
+CART_WITH_WHEELS = """<sdf version="1.11"><world name="shop">
+<frame name="mocap"><pose degrees="true">0 0 0 90 0 0</pose></frame>
+<model name="cart"><pose>1 2 0.5 0 0 0</pose><link name="deck"/>
+<frame name="markers"><pose>0 0 0.25 0 0 0</pose></frame>
+<plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive"/></model>
+</world></sdf>"""
+
+
+def test_the_odometry_of_wheels_begins_where_the_file_puts_the_model(follow, file, tracker):
+    replace(file, CART_WITH_WHEELS)
+    bridge = follow('/model/{model}/odometry', model_pose_frames=['*/odom'])
+    found = tracker.move(
+        3.0, 'cart/deck', Odometry, '/model/cart/odometry', seen_x=4.0, frame_id='cart/odom',
+        child='cart/deck').transform.translation
+    assert (found.y, found.z) == (2.0, 0.5)
+    bridge.wait_for_line('model_pose_frames has no effect on "cart/odom"')
+
+
+def test_a_tracker_with_another_axis_up_gives_poses_of_its_markers(follow, file, tracker):
+    replace(file, CART_WITH_WHEELS)
+    follow(model_pose_placement='markers')
+    # The tracker turns the markers about its z axis, which is -y of the world.
+    found = tracker.move(3.0, 'cart/deck', seen_x=3.0, frame_id='mocap').transform
+    assert (found.translation.y, found.translation.z) == pytest.approx((0.25, 0.0))
+
+
 def test_models_keep_their_poses_when_the_file_is_read_again(follow, file, tf, tracker):
     follow(watch=False)
     tracker.move(3.0)

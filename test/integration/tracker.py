@@ -22,8 +22,9 @@ def stamped(message_type, sec, x, frame_id='', child=''):
     """Return a message with a pose that is turned by a quarter about z."""
     message = message_type()
     message.header.stamp.sec, message.header.frame_id = sec, frame_id
-    if message_type is TransformStamped:
+    if hasattr(message, 'child_frame_id'):
         message.child_frame_id = child
+    if message_type is TransformStamped:
         translation, rotation = message.transform.translation, message.transform.rotation
     else:
         pose = message.pose if message_type is PoseStamped else message.pose.pose

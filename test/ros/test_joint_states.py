@@ -492,6 +492,26 @@ def two_arms(following):
     return following
 
 
+def test_a_bag_that_begins_again_without_a_clock_is_one_line_with_a_cure(following, capfd):
+    following.node.set_parameters([Parameter('use_sim_time', value=True)])
+    following.start(TWO_ARMS, topics=TWO_TOPICS)
+    for topic in ('/a/j', '/b/j'):
+        following.connect(topic)
+        following.published((FIRST + 100, {'turn': 0.5}, topic))
+
+    def is_late(*topics):
+        for topic in topics:
+            following.send(FIRST, {'turn': 0.1}, topic)
+        return following.states.unreported.problems
+
+    following.wait(lambda: is_late('/a/j', '/b/j'))
+    following.published((FIRST + 200, {'turn': 0.5}, '/a/j'))
+    following.wait(lambda: is_late('/b/j'))
+    line, = following.states.unreported.problems
+    assert 'play the bag with "ros2 bag play --clock"' in line
+    assert capfd.readouterr().err.count('messages move nothing') == 1
+
+
 def test_what_waits_at_the_end_of_a_period_is_one_message_with_the_stamp_of_each(two_arms):
     two_arms.published((FIRST, {'turn': 0.5}, '/a/j'))
     for number in range(1, 20):

@@ -282,6 +282,8 @@ def _override(include: XmlElement, top: XmlElement, sources: Sources) -> None:
             sources.set_source(replacement, new)
         if tag != 'pose' and not value_of(new):
             sources.error(ElementInvalidError, new, f'<{tag}> of the include is empty')
+    for plugin in child_elements(include, 'plugin'):
+        top.append(copy_of(plugin))
     if 'name' in own:
         sources.set_origin(top, is_named_by_include=True)
     if 'pose' in own:

@@ -39,8 +39,8 @@ from sdf_pose_bridge.sdformat.xml_tree import (
     child_elements,
     described,
     first_child,
+    is_foreign_itself,
     value_of,
-    written_tag,
     XmlElement,
 )
 
@@ -84,7 +84,7 @@ def merge(
         return
     moved = [
         child for child in child_elements(model)
-        if child.tag in PARTS_OF_MODEL or ':' in written_tag(child)]
+        if child.tag in PARTS_OF_MODEL or is_foreign_itself(child)]
     tags = PARTS_OF_MODEL.keys() - definition_of(str(parent.tag)).children.keys()
     misfits = [child for child in moved if child.tag in tags]
     for child in misfits:

@@ -1,0 +1,52 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""A source of poses of two models, one in the other."""
+
+import re
+
+from sdf_texts import joint, world_file
+
+from sdf_pose_bridge import load_text
+from sdf_pose_bridge.ros.cdr import StampedPose
+from sdf_pose_bridge.ros.model_poses import messages_from_poses
+from sdf_pose_bridge.ros.published_frames import PublishedFrames
+from sdf_pose_bridge.ros.publishers import Publishers
+from sdf_pose_bridge.ros.state_messages import Effects, StateSource
+from sdf_pose_bridge.tf.joint_positions import JointPositions
+from sdf_pose_bridge.tf.lookup import PoseLookup
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
+
+TEXT = world_file(
+    '<model name="a"><link name="l"/><link name="k"/>' + joint(
+        '<parent>l</parent><child>k</child><axis><xyz>1 0 0</xyz></axis>', 'j', 'prismatic')
+    + '<model name="b"><pose>0 3 0 0 0 0</pose><link name="l"/>'
+    '<plugin filename="f" name="gz::sim::systems::DiffDrive"/></model></model>'
+    '<model name="fixed"><static>true</static><pose>0 2 0 0 0 0</pose><link name="l"/></model>')
+TURNED = (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)
+
+
+class Models:
+    """A source of poses of the models ``a`` and ``a::b``."""
+
+    def __init__(self, node, placement=''):
+        scene = load_text(TEXT, plugins=True)
+        tree = tf_tree_from_scene(scene, TfOptions(
+            use_joint_states=True, follows_models=True, frame_prefix='p/'))
+        self.positions = JointPositions(scene, tree.moving.motion)
+        self.effects = Effects(
+            PublishedFrames(Publishers(node), tree, self.positions, {}).moving,
+            PoseLookup(scene, tree, self.positions), [re.compile('.*/odom')], placement)
+        self.source = StateSource(node, '/poses')
+
+    def read(self, child='a', frame_id='', pose=TURNED, stamp_ns=5, model=None):
+        """Return the messages of a pose, for a model or for the one that the child names."""
+        dof = None if model is None else self.effects.models[model]
+        return messages_from_poses(
+            [StampedPose(stamp_ns, frame_id, child, pose)], self.source, self.effects, dof,
+            self.effects.placements)
+
+    def moved(self, **fields):
+        """Return the name of the model that a pose moves, and its x and y in the root."""
+        (message,) = self.read(**fields)
+        (dof,) = message.effect.selection.dofs
+        return self.positions.names[dof], *self.effects.values(message)[0, :2].tolist()
