@@ -25,8 +25,9 @@ DIRECTIONS: Mapping[str, tuple[float, ...]] = {
 _HOME_DIRECTIONS = [(x, y, 0.45) for x in (0.75, -0.75) for y in (-0.5, 0.5)]
 _MARGIN = 1.1
 _MOST_COMPARED = 300
-_OUTLIERS = 0.1
-"""The part of the frames, in each direction, that the first view may leave out."""
+_OUTLIERS, _FAR = 0.1, 0.5
+"""The part of the frames, in each direction, that the first view may leave out; it leaves out
+those that are further from the others than this part of the extent of these."""
 
 
 class View(NamedTuple):
@@ -57,7 +58,9 @@ def bounds_of_interest(origins: Floats, boxes: Floats, robot: Floats) -> Floats:
     if not len(origins):
         origins = np.zeros((1, 3))
     left_out = int(_OUTLIERS * (len(origins) - 1))
-    bounds = bounds_of_points(np.sort(origins, axis=0)[[left_out, -1 - left_out]], robot)
+    inner = np.sort(origins, axis=0)[[left_out, -1 - left_out]]
+    distances_m = np.linalg.norm(origins - origins.clip(*inner), axis=1)
+    bounds = bounds_of_points(inner, origins[distances_m <= _FAR * math.dist(*inner)], robot)
     extent_m = math.dist(*bounds)
     sizes_m, middles = np.linalg.norm(boxes[:, 1] - boxes[:, 0], axis=1), boxes.mean(axis=1)
     is_near = (np.abs(middles - bounds.mean(axis=0)) <= 0.6 * np.ptp(bounds, axis=0) + 1e-6
