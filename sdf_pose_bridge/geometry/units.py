@@ -34,6 +34,12 @@ class Unit(NamedTuple):
         """A half turn in this unit of angles."""
         return math.pi * self.factor
 
+    def rounded(self, value: float, *, fewer_digits: int = 0) -> str:
+        """Write a length in metres, or an angle in radians, in this unit."""
+        digits = self.digits - fewer_digits
+        # Adding zero removes negative zeros.
+        return f'{round(value * self.factor, digits) + 0.0:.{digits}f}'
+
 
 METRES, MILLIMETRES = Unit('m', 'metres', 1.0, 4), Unit('mm', 'mm', 1000.0, 1)
 RADIANS = Unit('rad', 'radians', 1.0, 4)
@@ -77,13 +83,9 @@ class Units(NamedTuple):
         :param fewer_digits: the number of digits to leave out.
         :return: x, y, z, roll, pitch and yaw, rounded.
         """
-        texts = []
         values = (*pose[:3], *rpy_from_quaternion(pose[3:]))
-        for value, unit in zip(values, self.of_pose, strict=True):
-            digits = unit.digits - fewer_digits
-            # Adding zero removes negative zeros.
-            texts.append(f'{round(value * unit.factor, digits) + 0.0:.{digits}f}')
-        return texts
+        return [unit.rounded(value, fewer_digits=fewer_digits)
+                for value, unit in zip(values, self.of_pose, strict=True)]
 
 
 class Doubt(NamedTuple):

@@ -181,9 +181,11 @@ class Page:
         """Show the current state of the controls."""
         shown, selected, edit = self._shown, self._selected, self._edit
         units = self.units._replace(angle=_ANGLES[self._angles.value])
+        refusals = self._joints.refresh()
         # Many sliders take a browser long.
         if (shown.joints, units) != (self._joints.ranges, self._joints.units):
             self._joints.folder.remove()
+            refusals = ''
             self._joints = JointSliders(
                 self._client.gui, shown.joints, self._joints.positions, units, self._events,
                 self._joints.folder.order)
@@ -201,7 +203,7 @@ class Page:
             strip = html_of_selection(shown, drawn, frame, reference, units) + strip
         self._tell_script('labels', self._drawing.show(drawn, frame, reference, units.length))
         selected.describe(html_of_frame(drawn, frame, reference, units) if frame >= 0 else '')
-        self._tell_script('strip', strip)
+        self._tell_script('strip', refusals + strip)
 
     def _tell_script(self, name: str, value: str) -> None:
         self._data[name].content = html_of_data(name, value)

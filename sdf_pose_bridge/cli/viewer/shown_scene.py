@@ -33,15 +33,15 @@ class JointRange(NamedTuple):
     is_angle: bool
     lower: float
     upper: float
-    is_turn: bool = False
-    """Whether it is a whole turn, so that its ends are one position."""
+    is_free: bool = False
+    """Whether the joint also has other positions; an angle then has a whole turn."""
 
 
 def range_within_limits(lower: float, upper: float, *, is_angle: bool) -> JointRange:
     """Return the range of a joint with these limits."""
     if upper - lower >= _LARGEST_RANGE:
         most = math.pi if is_angle else 0.5
-        return JointRange(is_angle, -most, most, is_turn=is_angle)
+        return JointRange(is_angle, -most, most, is_free=True)
     return JointRange(is_angle, lower, max(lower, upper))
 
 
@@ -96,8 +96,8 @@ class ShownScene:
     def at(self, positions: Mapping[str, float], scene: Scene | None = None) -> ShownScene:
         """Return the scene at positions of its joints; ``scene`` replaces the loaded one."""
         shown = copy.copy(self)
-        shown.positions, shown.scene = positions, scene_at_positions(
-            scene or self.loaded, positions)
+        shown.positions, shown.loaded = positions, scene or self.loaded
+        shown.scene = scene_at_positions(shown.loaded, positions)
         shown.poses = _with_root(tf_tree_from_scene(shown.scene, self._options).poses)
         return shown
 
