@@ -112,7 +112,7 @@ def run(options: argparse.Namespace) -> int:
             for line in pages.reasons:
                 print(f'sdf_pose view: {line}', file=sys.stderr)
             if options.output is not None:
-                _write(pages.html(options.files[0]), options.output)
+                _write(pages.html(), options.output)
                 return 0
             _open(pages.address, options.port)
             watcher = FileWatcher()

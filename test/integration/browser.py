@@ -65,6 +65,17 @@ class Browser:
         self.call('Emulation.setDeviceMetricsOverride', width=width, height=height,
                   deviceScaleFactor=1, mobile=False)
 
+    def keys(self, *keys):
+        """Press and release keys: characters, or keys by their names."""
+        codes = {'Tab': 9, 'Enter': 13, 'Escape': 27, 'ArrowUp': 38, 'ArrowRight': 39,
+                 'ArrowDown': 40}
+        for key in keys:
+            text = {'Enter': '\r'}.get(key, key[:len(key) == 1])
+            self.call('Input.dispatchKeyEvent', type='keyDown', key=key, text=text,
+                      windowsVirtualKeyCode=codes.get(key, 0))
+            self.call('Input.dispatchKeyEvent', type='keyUp', key=key,
+                      windowsVirtualKeyCode=codes.get(key, 0))
+
     def mouse(self, *steps):
         """Press at the first of some points, move over them, and release at the last one."""
         for kind, (x, y) in (

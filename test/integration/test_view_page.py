@@ -40,7 +40,7 @@ TEXT = f"""<sdf version="1.11"><world name="w">
 </world></sdf>"""
 BOX = '<visual name="v"><geometry><box><size>0.1 0.1 0.1</size></box></geometry></visual>'
 AXES_M = 0.1 * np.linalg.norm((1.1, 0.2, 0.2))
-ROWS = "[...document.querySelectorAll('.rows label')]"
+ROWS = "[...document.querySelectorAll('.rows [data-ask^=select]')]"
 
 
 def run_view(folder, *arguments, **options):
@@ -109,7 +109,7 @@ def enter(page, element, text):
 def control(label):
     """Return the input element with a label."""
     return f"""(label => {{
-      let node = [...document.querySelectorAll('label')].find(
+      let node = [...document.querySelectorAll('label')].findLast(
         each => each.textContent.trim() === label);
       while (node && !node.querySelector('input:not([type=hidden])')) node = node.parentElement;
       return node?.querySelector('input:not([type=hidden])');
@@ -144,7 +144,7 @@ def sized_page(page, request):
     page.size(1366, 768)
 
 
-@pytest.mark.parametrize('sized_page', [(1366, 768), (800, 600), (500, 700)], indirect=True)
+@pytest.mark.parametrize('sized_page', [(1366, 768), (800, 600), (390, 844)], indirect=True)
 def test_selected_frame_and_errors_are_in_view(sized_page, shown):
     select(sized_page, 'slide')
     strip = "document.querySelector('.strip')"
@@ -179,9 +179,7 @@ def type_over(page, element, text):
     wait_until_movable(page)
     page.wait_for(f'(input => input && !input.disabled)({element})')
     page.run(f'(input => {{ input.focus(); input.select(); }})({element})')
-    for key in text:
-        page.call('Input.dispatchKeyEvent', type='keyDown', text=key)
-        page.call('Input.dispatchKeyEvent', type='keyUp')
+    page.keys(*text)
 
 
 @pytest.mark.parametrize('number', ['-0.25', '6.1e-05'])
@@ -190,13 +188,13 @@ def test_typed_number_is_the_one_that_is_written(page, shown, number):
     page.wait_for(f"document.querySelector('.difference')?.rows[1].cells[2].innerText "
                   f"=== '{float(number):.4f}'")
     assert page.run(f'{control("x [m]")}.value') == number
-    page.run(f"{strip_label('write to file')}.click()")
+    page.run(f"{strip_button('write to file')}.click()")
     line = 1 + TEXT[:TEXT.index('1 0 0 0 0 0')].count('\n')
     page.wait_for(f"""document.querySelector('.strip').innerText.includes(
       'written to cell.sdf:{line}')""")
     assert load(shown.file).pose(HOSTILE)[:3] == pytest.approx((float(number), 0, 0), abs=1e-9)
-    page.run(f"{strip_label('undo the last write')}.click()")
-    page.wait_for(f"!{strip_label('undo the last write')}")
+    page.run(f"{strip_button('undo the last write')}.click()")
+    page.wait_for(f"!{strip_button('undo the last write')}")
 
 
 @pytest.mark.parametrize('text', ['1/2', '1,234.5'])
@@ -204,9 +202,9 @@ def test_typed_text_that_is_no_number_is_not_written(page, text):
     type_over(page, control('y [m]'), text)
     page.wait_for(f"""document.querySelector('.strip .errors')?.innerText
       === "'{text}' is not a number" """)
-    page.wait_for(is_in_window(strip_label('cancel')))
-    assert page.run(f"{strip_label('write to file')}") is None
-    page.run(f"{strip_label('cancel')}.click()")
+    page.wait_for(is_in_window(strip_button('cancel')))
+    assert page.run(f"{strip_button('write to file')}") is None
+    page.run(f"{strip_button('cancel')}.click()")
     page.wait_for(f"{control('y [m]')}.value === '0.0000'")
 
 
@@ -219,8 +217,11 @@ def test_dark_page_of_a_dark_system_and_a_tab_whose_program_has_ended(tmp_path):
         with view_of(tmp_path) as address:
             page.open(address)
             page.wait_for("document.documentElement?.dataset.mantineColorScheme === 'dark'")
-        page.wait_for("document.querySelector('.strip')?.innerText.includes('view has ended')")
-        page.wait_for(is_in_window("document.querySelector('.strip')"))
+        strip = "document.querySelector('.strip')"
+        page.wait_for(f"{strip}?.innerText.includes('view has ended')")
+        page.wait_for(is_in_window(strip))
+        color = page.run(f'getComputedStyle({strip}).backgroundColor')
+        assert max(map(int, re.findall('[0-9]+', color)[:3])) < 100
 
 
 def test_each_tab_has_its_own_selection(page, shown, tmp_path):
@@ -295,11 +296,65 @@ def test_arrow_keys_move_a_slider_and_nothing_else(page):
     thumb = "document.querySelectorAll('[role=slider]')[1]"
     page.run(f'{thumb}.focus()')
     before = page.run(f'{thumb}.ariaValueNow')
-    for kind in ('keyDown', 'keyUp'):
-        page.call('Input.dispatchKeyEvent', type=kind, key='ArrowRight', code='ArrowRight')
+    page.keys('ArrowRight')
     page.wait_for(f"{thumb}.ariaValueNow !== '{before}'")
     assert page.run('window.keys') == 0
     enter(page, control('rail'), '0')
+
+
+def test_joint_goes_where_is_typed_or_says_why_not(page):
+    select(page, 'slide')
+    type_over(page, control('rail'), '5e-1')
+    page.wait_for("document.body.innerText.includes('xyz 0.0000 0.0000 0.5000 m')")
+    assert page.run(f'{control("rail")}.value') == '5e-1'
+    type_over(page, control('rail'), '30')
+    page.wait_for("""document.querySelector('.strip .errors')?.innerText
+      === 'rail: 30 is not between 0.0000 and 2.0000 m'""")
+    assert page.run(f'{control("rail")}.value') == '30'
+    type_over(page, control('rail'), '0')
+    page.wait_for("document.body.innerText.includes('xyz 0.0000 0.0000 0.0000 m')")
+    assert page.run("document.querySelector('.strip .errors')") is None
+
+
+def has_keyboard(element):
+    return f'document.activeElement === {element}'
+
+
+def test_frame_is_selected_typed_written_and_cancelled_by_the_keyboard(page, shown):
+    page.run(f"{control('search')}.focus()")
+    page.keys(*'IMG', 'Enter')
+    page.wait_for(has_keyboard("document.querySelector('.rows .selected')"))
+    wait_until_movable(page)
+    page.keys('Tab')
+    page.wait_for(has_keyboard(control('x [m]')))
+    page.keys(*'0.25', 'Enter')
+    page.wait_for(has_keyboard(strip_button('write to file')))
+    page.keys('Enter')
+    page.wait_for("document.querySelector('.strip').innerText.includes('written to')")
+    assert load(shown.file).pose(HOSTILE)[:3] == pytest.approx((0.25, 0, 0), abs=1e-9)
+    assert page.run("document.querySelector('.difference').rows[1].innerText").split('\t') == [
+        'x [m]', '1.0000', '0.2500', '-0.7500']
+    page.wait_for(has_keyboard(control('x [m]')))
+    page.keys('7', 'Escape')
+    page.wait_for(f"{control('x [m]')}.value === '0.2500' && !{strip_button('cancel')}")
+    enter(page, control('search'), '')
+
+
+def test_arrow_keys_move_in_the_tree(page):
+    page.run(f'{ROWS}[0].focus()')
+    page.keys('ArrowDown', 'ArrowDown', 'ArrowUp', 'Enter')
+    second = page.run(f'{ROWS}[1].textContent')
+    page.wait_for(f"document.querySelector('.rows .selected')?.textContent === '{second}'")
+    page.wait_for(has_keyboard(f'{ROWS}[1]'))
+    page.keys('ArrowRight')
+    page.wait_for(has_keyboard(f'{ROWS}[1].parentElement.lastChild'))
+
+
+def test_names_of_frames_are_switched_on(page):
+    page.run(f"{control('names of frames')}.click()")
+    page.wait_for(f"{LABELS}.some(label => label.innerText.includes('base'))")
+    page.run(f"{control('names of frames')}.click()")
+    page.wait_for(f'{LABELS}.length === 1')
 
 
 def test_search(page):
@@ -345,8 +400,8 @@ def point_on_screen(page, point):
     return 0.5 * width + scale * x / z, 0.5 * height - scale * y / z
 
 
-def strip_label(text):
-    return f"[...document.querySelectorAll('.strip label')].find(l => l.innerText === '{text}')"
+def strip_button(text):
+    return f"[...document.querySelectorAll('.strip button')].find(l => l.innerText === '{text}')"
 
 
 def drag(page):
@@ -360,21 +415,21 @@ def drag(page):
     z = "document.querySelector('.difference')?.rows[3].cells[2].innerText"
     page.wait_for(f'Math.abs({z} - 0.1) < 0.02')
     for label in ('write to file', 'cancel'):
-        page.wait_for(is_in_window(strip_label(label)))
+        page.wait_for(is_in_window(strip_button(label)))
 
 
 def test_frame_is_dragged_and_written(page, shown):
     select(page, HOSTILE)
     drag(page)
-    page.run(f"{strip_label('write to file')}.click()")
-    page.wait_for(f"!{strip_label('write to file')}")
+    page.run(f"{strip_button('write to file')}.click()")
+    page.wait_for(f"!{strip_button('write to file')}")
     pose = load(shown.file).pose(HOSTILE)
     assert pose[:3] == pytest.approx((1.0, 0.0, 0.1), abs=0.02)
     changed = shown.file.read_text().splitlines()
     assert [line for line in TEXT.splitlines() if line not in changed] == [
         f'  <frame name="{html.escape(HOSTILE)}"><pose>1 0 0 0 0 0</pose></frame>']
-    page.run(f"{strip_label('undo the last write')}.click()")
-    page.wait_for(f"!{strip_label('undo the last write')}")
+    page.run(f"{strip_button('undo the last write')}.click()")
+    page.wait_for(f"!{strip_button('undo the last write')}")
     assert shown.file.read_text() == TEXT
 
 
@@ -399,7 +454,7 @@ def test_what_moves_is_drawn_and_named_before_it_is_written(sized_page, shown):
     wait_for_name_at(
         sized_page, *point_on_screen(sized_page, (0.6, -0.1, 0.09)), 'arm/base, visual v')
     assert shown.file.read_text() == TEXT
-    sized_page.run(f"{strip_label('cancel')}.click()")
+    sized_page.run(f"{strip_button('cancel')}.click()")
     wait_for_name_at(
         sized_page, *point_on_screen(sized_page, (0.1, -0.1, 0.09)), 'arm/base, visual v')
     assert sized_page.run("document.querySelector('.moved')") is None
@@ -486,6 +541,23 @@ def test_labels_are_whole_in_a_panel_that_leaves_room_to_the_scene(shown, tmp_pa
 
 
 @pytest.mark.usefixtures('page')
+def test_scene_is_seen_while_one_types_on_a_phone(shown, tmp_path):
+    with browser(tmp_path / 'browser') as phone:
+        phone.size(390, 844)
+        phone.open(shown.address)
+        select(phone, HOSTILE)
+        field = control('yaw [deg]')
+        type_over(phone, field, '1')
+        phone.wait_for(is_in_window(strip_button('write to file')))
+        phone.wait_for(is_in_window(field))
+        # From above: the strip, the scene, the field.
+        phone.wait_for(f"""(canvas => canvas.height >= 0.29 * innerHeight
+          && canvas.top >= document.querySelector('.strip').getBoundingClientRect().bottom - 1
+          && canvas.bottom <= {field}.getBoundingClientRect().top)(
+          document.querySelector('canvas').getBoundingClientRect())""")
+
+
+@pytest.mark.usefixtures('page')
 def test_frame_is_moved_in_a_narrow_window_where_the_panel_is_folded(shown, tmp_path):
     with browser(tmp_path / 'browser') as narrow:
         narrow.size(700, 600)
@@ -495,8 +567,8 @@ def test_frame_is_moved_in_a_narrow_window_where_the_panel_is_folded(shown, tmp_
         wait_for_name_at(narrow, *point_on_screen(narrow, (1.0, 0.0, 0.0)), HOSTILE)
         narrow.mouse(point_on_screen(narrow, (1.0, 0.0, 0.05)))
         drag(narrow)
-        narrow.run(f"{strip_label('cancel')}.click()")
-        narrow.wait_for(f"!{strip_label('cancel')}")
+        narrow.run(f"{strip_button('cancel')}.click()")
+        narrow.wait_for(f"!{strip_button('cancel')}")
         assert narrow.run(f'{LABELS}.map(label => label.innerText)') == [HOSTILE]
         assert narrow.run(f'{ROWS}.length') == 0
         assert narrow.run('window.wasRun') is None

@@ -39,9 +39,10 @@ from sdf_pose_bridge.tf.tree import TfTree
 MOST_NAMES = 500
 """Largest number of names that are shown at once."""
 
-GROUPS = ('visuals', 'collisions', 'all names', 'all lines to parents', 'grid')
-"""Groups that can be hidden, besides the kinds of frames by their labels."""
-HIDDEN_AT_FIRST = frozenset(('collisions', 'all names', 'all lines to parents'))
+NAMES = 'names of frames'
+GROUPS = ('visuals', 'collisions', 'all lines to parents', 'grid')
+"""Groups that can be hidden, besides ``NAMES`` and the kinds of frames by their labels."""
+HIDDEN_AT_FIRST = frozenset(('collisions', NAMES, 'all lines to parents'))
 """The groups that a page hides at first."""
 
 _WXYZ = [6, 3, 4, 5]
@@ -199,7 +200,7 @@ class Drawing:
             labels.insert(0, (f'{unit.factor * length_m:.{unit.digits}f} {unit.name}', True,
                               *measured[0].mean(axis=0)))
         self._measured.points = measured
-        named = visible.frames[:0 if 'all names' in visible.hidden else MOST_NAMES].tolist()
+        named = visible.frames[:0 if NAMES in visible.hidden else MOST_NAMES].tolist()
         labels += [
             (printable(shortened(shown.short_names[index])), index == frame, *origins[index])
             for index in dict.fromkeys((*named, frame)) if index >= 0]

@@ -194,15 +194,15 @@ def html_of_tree(
             text = frame_id if search else shown.short_names[index]
             rows.append(
                 f'<div style="padding-left:{0 if search else min(depth, 20)}em">'
-                f'<i data-ask="fold {index}">'
-                f'{_FOLDS[frame_id in folded] if below and not search else ""}</i>'
+                f'<button tabindex=-1 data-ask="fold {index}">'
+                f'{_FOLDS[frame_id in folded] if below and not search else ""}</button>'
                 f'<b title="{kind}">{_SIGNS.get(kind, "+")}</b>'
-                f'<label data-ask="select {index}"'
-                f'{" class=selected" if frame_id == selected else ""}>{escaped(text)}</label>'
-                f'<i data-ask="hide {index}" title="show or hide">{_EYES[frame_id in hidden]}</i>'
-                '</div>')
+                f'<button tabindex=-1 data-ask="select {index}"'
+                f'{" class=selected" if frame_id == selected else ""}>{escaped(text)}</button>'
+                f'<button tabindex=-1 data-ask="hide {index}" title="show or hide">'
+                f'{_EYES[frame_id in hidden]}</button></div>')
         if search or frame_id not in folded:
             waiting += [(child, depth + 1) for child in reversed(below)]
     if not search and len(rows) < len(ids):
         rows.append(f'{len(ids) - len(rows)} more, to be found by the search')
-    return f'<div class="rows">{"".join(rows)}</div>'
+    return f'<div class="rows" tabindex=0 data-search={quoteattr(search)}>{"".join(rows)}</div>'

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Features of the page that viser does not have: frames and lines on top of bodies, labels without
-// overlaps, names at the pointer, a strip over the scene, the opacity of bodies, copying, and
+// overlaps, names at the pointer, a strip over the scene, the opacity of bodies, copying, keys, and
 // changes of several controls at once. The scene is found as the developer tools of three.js find
 // it.
 (() => {
@@ -173,6 +173,32 @@
   const strip = document.createElement('div');
   strip.className = 'strip';
   let shownInStrip = '', selected;
+  const SEARCH = 'div:has(+ div > .rows) input';
+  const FIELD = 'div:has(> .frame-of-numbers) ~ div input';
+  // The element with the keyboard, the last field, and the element that shall have the keyboard.
+  let focused, field, awaited;
+  addEventListener('focusin', ({target}) => {
+    [focused, field] = [target, target.matches(FIELD) ? target : field];
+  });
+  addEventListener('pointerdown', () => { focused = awaited = null; });
+  const updateFocus = row => {
+    (row ?? document.querySelector('.rows [data-ask^=select]'))?.setAttribute('tabindex', 0);
+    const {ask} = focused?.dataset ?? {};
+    if (ask && !focused.isConnected) {
+      (document.querySelector(`[data-ask="${ask}"]`) ?? field)?.focus();
+    }
+    const found = awaited && document.querySelector(awaited);
+    if (found) awaited = null;
+    found?.focus();
+    if (found?.matches('.rows *')) found.click();
+  };
+  const moveInTree = (button, key) => {
+    const row = button.closest('.rows > div'), isAcross = /Left|Right/.test(key);
+    const others = isAcross ? [...row.querySelectorAll('button:not(:empty)')]
+      : [...row.parentElement.querySelectorAll('[data-ask^=select]')];
+    const at = others.findIndex(other => isAcross ? other === button : row.contains(other));
+    others[at + (/Left|Up/.test(key) ? -1 : 1)]?.focus();
+  };
   const update = () => {
     if (isToBeDark && asked()) { isToBeDark = false; tell('dark'); }
     const row = document.querySelector('.rows .selected'), rows = row?.closest('.rows');
@@ -183,15 +209,33 @@
     const text = hasEnded
       ? '<b>sdf_pose view has ended; start it again and open the page that it names</b>'
       : given('errors', '') + given('strip', '');
-    if (text === shownInStrip) return;
-    shownInStrip = strip.innerHTML = text;
-    strip.style.maxWidth = `${document.querySelector('canvas').clientWidth - 16}px`;
-    document.body.append(strip);
+    if (text !== shownInStrip) {
+      shownInStrip = strip.innerHTML = text;
+      strip.style.maxWidth = `${document.querySelector('canvas').clientWidth - 16}px`;
+      document.body.append(strip);
+      document.body.style.setProperty('--strip', `${strip.offsetHeight}px`);
+      if (document.activeElement === field) field.scrollIntoView({block: 'nearest'});
+    }
+    updateFocus(row);
   };
   new MutationObserver(update).observe(document, {childList: true, subtree: true});
   // Behind the controls and before viser, whose camera also turns by the arrow keys.
   addEventListener('DOMContentLoaded', () => document.body.addEventListener('keydown', event => {
-    if (event.target.closest('[role=slider], input, textarea')) event.stopPropagation();
+    const {target, key} = event;
+    awaited = null;
+    if (!target.closest('[role=slider], input, textarea, .rows, .strip')) return;
+    event.stopPropagation();
+    if (key === 'Enter' && target.matches(SEARCH)) {
+      awaited = `.rows[data-search="${CSS.escape(target.value)}"] [data-ask^=select]`;
+    } else if (key === 'Enter' && target.matches(FIELD)) {
+      awaited = '.strip [data-ask]';
+    } else if (key === 'Escape' && (target.matches(FIELD) || target.closest('.strip'))) {
+      tell('cancel');
+    } else if (key.startsWith('Arrow') && target.closest('.rows')) {
+      event.preventDefault();
+      moveInTree(target, key);
+    }
+    update();
   }));
   addEventListener('pointerover', ({target}) => {
     const path = given('path');

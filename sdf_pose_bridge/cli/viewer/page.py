@@ -13,7 +13,7 @@ import threading
 import viser
 
 from sdf_pose_bridge import Scene
-from sdf_pose_bridge.cli.viewer.drawing import Drawing, GROUPS, HIDDEN_AT_FIRST, VisiblePart
+from sdf_pose_bridge.cli.viewer.drawing import Drawing, GROUPS, HIDDEN_AT_FIRST, NAMES, VisiblePart
 from sdf_pose_bridge.cli.viewer.frame_texts import (
     html_of_data,
     html_of_frame,
@@ -136,7 +136,7 @@ class Page:
         folder_of_frames = gui.add_folder('Frames')
         # They are in view where a frame is clicked in the tree.
         self._edit = None if find_change is None else PoseEdit(
-            client, shown, find_change, self._events)
+            client, shown, find_change, self._events, self.show)
         self._selected = SelectedFrame(gui, folder_of_frames, self._events)
         self._angles, self._dark = self._add_view_controls(units)
         self._switches = self._add_switches()
@@ -260,6 +260,7 @@ class Page:
             opacity = gui.add_slider('opacity', 0.1, 1.0, 0.05, 1.0)
             angles = gui.add_dropdown(
                 'angles', tuple(_ANGLES), initial_value=units.angle.name)
+            self._add_switch(NAMES)
             dark = gui.add_checkbox('dark background', initial_value=False)
         self._events.when(views.on_click, lambda: self._look(views.value))
         self._events.when(
@@ -302,12 +303,15 @@ class Pages:
         self._options, self._units, self._meshes = options, units, meshes
         self._shown = ShownScene(scene, options)
         self._visible = visible = VisiblePart(
-            self._shown, meshes, HIDDEN_AT_FIRST - {'all names'})
+            self._shown, meshes, HIDDEN_AT_FIRST - {NAMES})
         self.reasons = visible.reasons
         """Lines about shapes that cannot be drawn."""
         path = Path(scene.path)
+        # Many files of models have the name model.sdf.
+        self._title = printable(options.model or (
+            path.name if scene.world_names else [*scene.names[1:2], path.name][0]))
         self._server, self.address = server_for_its_owner(
-            port, printable(path.name), html_of_data('path', str(path.resolve())))
+            port, self._title, html_of_data('path', str(path.resolve())))
         self._errors = ''
         camera = self._server.initial_camera
         camera.position, camera.look_at = visible.home
@@ -318,13 +322,13 @@ class Pages:
             Page, wake=self._wake, meshes=meshes, find_change=find_change)
         self._server.on_client_connect(lambda _: self._wake.set())
 
-    def html(self, title: str) -> str:
+    def html(self) -> str:
         """Return the scene with all names, without controls, as a page that needs no network."""
         # Nothing can be selected there.
         labels = Drawing(self._server.scene, '/drawing', self._visible, print).show(
             self._shown, ROOT_IS_PARENT, ROOT_IS_PARENT, self._units.length)
         return page_with_script(
-            self._server.get_scene_serializer().as_html(), printable(title),
+            self._server.get_scene_serializer().as_html(), self._title,
             html_of_data('names', self._visible.names) + html_of_data('labels', labels))
 
     def close(self) -> None:

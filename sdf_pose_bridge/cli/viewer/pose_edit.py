@@ -31,13 +31,15 @@ class PoseEdit:
 
     def __init__(
         self, client: viser.ClientHandle, shown: ShownScene, find_change: FindChange,
-        events: Events,
+        events: Events, show: Callable[[ShownScene], object],
     ) -> None:
-        self._find_change, self._shown, self._frame = find_change, shown, -1
+        self._find_change, self._show_file, self._shown = find_change, show, shown
+        self._frame = -1
         self._target, self._reference = ('', Pose()), Pose()
         self.pose: Pose | None = None
         """The new pose in the root frame; None until something is changed."""
-        self._is_written = False
+        self._overwritten: Pose | None = None
+        """The pose before the last write, while the frame has the written one."""
         self._change: PoseChange | None = None
         self._looked_at: tuple[object, ...] = ()
         self._notes: tuple[str, ...] = ()
@@ -51,9 +53,11 @@ class PoseEdit:
         self._placed = Pose()
         gui = client.gui
         with gui.add_folder('Edit'):
+            self._frame_of_numbers = gui.add_html('')
             self._numbers = [gui.add_text(label, '', disabled=True) for label in POSE_LABELS]
         for control in (self._gizmo, *self._numbers):
-            events.when(control.on_update)
+            # What was typed counts before a click that follows.
+            events.when(control.on_update, self._take_numbers)
         self._texts, self._shown_for = [''] * 6, (Pose(), Pose(), Units())
 
     def refresh(self, shown: ShownScene, frame: int, reference: int, units: Units) -> None:
@@ -67,25 +71,28 @@ class PoseEdit:
         :param reference: index of the frame relative to which numbers are.
         """
         before, target = self._target, (shown.ids[frame], shown.pose_of(frame))
-        is_read_again = shown.loaded is not self._shown.loaded
+        if shown.loaded is not self._shown.loaded or target[0] != before[0]:
+            self._looked_at = ()
         self._shown, self._frame = shown, frame
         self._target, self._reference = target, shown.pose_of(reference)
         if target[0] != before[0]:
             self._change = None
-        if is_read_again or target[0] != before[0]:
-            self._looked_at = ()
-        if target != before or (self._is_written and is_read_again):
+        if target != before:
+            self._overwritten = None
             self._take(None)
         elif self._change is not None:
             self._take_numbers()
             self._take_gizmo()
+        text = f'{escaped(target[0])} in <b>{escaped(shown.ids[reference])}</b>'
+        self._frame_of_numbers.content = '<div class="frame-of-numbers">{}</div>'.format(
+            text if frame >= 0 else 'select a frame to move it')
         self._show(units)
 
     def look_ahead(self) -> bool:
         """Find the scene with the new pose; return False if it was known already."""
         shown, asked = self._shown, (self.pose, self.pose and self._shown.positions)
         element = shown.element_of(self._frame)
-        if element < 0 or self._is_written or asked == self._looked_at:
+        if element < 0 or asked == self._looked_at:
             return False
         self._looked_at, self._errors = asked, []
         try:
@@ -100,18 +107,13 @@ class PoseEdit:
 
     @property
     def shown_ahead(self) -> ShownScene:
-        """The scene with the new pose, written or not, and all that moves with it if known."""
+        """The scene with the new pose, and all that moves with it if known."""
         if self.pose is None:
             return self._shown
         shown = self._shown
         if self._change is not None and self._looked_at and not self._errors:
             shown = shown.at(shown.positions, self._change.scene)
         return shown.with_pose(self._frame, self.pose)
-
-    @property
-    def _is_new(self) -> bool:
-        """Whether there is a new pose that is not written."""
-        return self.pose is not None and not self._is_written
 
     @property
     def _pose(self) -> Pose:
@@ -121,9 +123,9 @@ class PoseEdit:
     def actions(self) -> dict[str, Callable[[], object]]:
         """The actions that are possible now, by the labels to click."""
         actions: dict[str, Callable[[], object]] = {}
-        if self._is_new and not self._refusal:
+        if self.pose is not None and not self._refusal:
             actions['write to file'] = self._write_pose
-        if self._is_new or self._refusal:
+        if self.pose is not None or self._refusal:
             actions['cancel'] = partial(self._take, None)
         if self._undone is not None:
             actions['undo the last write'] = partial(self._write, self._undone, None)
@@ -131,26 +133,27 @@ class PoseEdit:
 
     @property
     def html(self) -> str:
-        """The new pose beside the one in the file, errors, and labels to click."""
+        """The new pose beside the one in the file, errors, and buttons."""
         text = '' if self._change is None or self.pose else (
-            '<div>drag the arrows or type numbers to move it</div>')
-        if self._is_new:
-            text += html_of_difference(
-                self._target[1], self._pose, self._reference, self._shown_for[2])
+            '<div>drag the arrows or type numbers to move it; Enter leads to the buttons, '
+            'Escape cancels</div>')
+        old = self._overwritten if self.pose is None else self._target[1]
+        if old is not None:
+            text += html_of_difference(old, self._pose, self._reference, self._shown_for[2])
         if self._undone is not None:
             path = Path(self._undone.file.path)
             text += f'<div>written to {escaped(path.name)}:{self._undone.line}</div>'
-        labels = (f'<label data-ask="{label}">{label}</label>' for label in self.actions)
+        buttons = (f'<button data-ask="{label}">{label}</button>' for label in self.actions)
         # Before anything is changed, they are only the reason why nothing can be.
         errors = html_of_lines('errors' if self.pose else 'errors_of_setting', self._errors)
         notes = html_of_lines('errors', filter(None, (*self._notes, self._refusal)))
-        return f'{text}{notes}{errors}{"".join(labels)}'
+        return f'{text}{notes}{errors}{"".join(buttons)}'
 
     def _take(self, pose: Pose | None, *notes: str) -> None:
-        self.pose, self._notes, self._is_written = pose, notes, False
+        self.pose, self._notes = pose, notes
         if pose is None:
             self._errors, self._refusal = [], ''
-            # What was refused goes, too.
+            # Also clear the rejected text.
             for number, text in zip(self._numbers, self._texts, strict=True):
                 number.value = text
 
@@ -208,15 +211,19 @@ class PoseEdit:
                     number.value = text
 
     def _write_pose(self) -> None:
-        self._take_numbers()
         self.look_ahead()
         if self._change is not None and not self._errors and not self._refusal:
-            self._write(
-                self._change, self._change._replace(file=self._change.file.undone))
+            self._write(self._change, self._change._replace(
+                file=self._change.file.undone, scene=self._shown.loaded))
 
     def _write(self, change: PoseChange, undone: PoseChange | None) -> None:
         try:
             change.file.write()
-            self._undone, self._is_written, self._notes = undone, True, ()
         except SdfError as error:
             self._notes = tuple(map(str, error.errors))
+            return
+        shown = self._shown.at(self._shown.positions, change.scene)
+        self._undone, self._overwritten = undone, self._target[1] if undone else None
+        self._target = self._target[0], shown.pose_of(self._frame)
+        self._take(None)
+        self._show_file(shown)

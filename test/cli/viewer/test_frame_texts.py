@@ -128,7 +128,8 @@ def test_name_is_text(scene):
 def rows(shown, search='', *, folded=()):
     """Return the depth, the sign of folding and the text of each row."""
     text = html_of_tree(shown, search, '', folded, ())
-    return re.findall('padding-left:(.*?)em.*?fold.*?>(.*?)</i>.*?<label.*?>(.*?)</label>', text)
+    button = '<button.*?>(.*?)</button>'
+    return re.findall(f'padding-left:(.*?)em.*?{button}.*?{button}', text)
 
 
 def test_rows_stand_below_their_parents(scene):

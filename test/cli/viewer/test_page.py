@@ -120,6 +120,15 @@ def test_tab_has_the_unit_that_was_chosen_last(scene_of, mesh_reader, server):
     pages.close()
 
 
+@pytest.mark.parametrize(('text', 'title'), [
+    (TEXT, 'm'), ('<sdf version="1.11"><world name="w"/></sdf>', 'cell.sdf')])
+def test_title_is_the_name_of_the_model_or_else_of_the_file(text, title, mesh_reader):
+    pages = Pages(
+        load_text(text.encode(), 'cell.sdf', shapes=True), TfOptions(), 0, Units(), mesh_reader)
+    assert f'<title>{title}</title>' in pages.html()
+    pages.close()
+
+
 def test_line_joins_the_frames_that_are_measured(page_of):
     page = page_of('<sensor name="s" type="imu"><pose>1 2 3 0 0 0</pose></sensor>')
     select(page, 'l')

@@ -21,10 +21,19 @@ from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.pose_setting import PoseChange
 from sdf_pose_bridge.tf.tree import TfOptions
 
-TEXT = b"""<sdf version="1.11"><model name="m"><link name="l"/>
+TEXT = """<sdf version="1.11"><model name="m"><link name="l"/>
   <frame name="free"/><frame name="fixed"/></model></sdf>"""
 UNITS = Units()
-SCENE = load_text(TEXT, 'm.sdf')
+
+
+def scene_with(pose):
+    """Return the scene with another pose of the free frame."""
+    numbers = ' '.join(map(str, (*pose[:3], *rpy_from_quaternion(pose[3:]))))
+    return load_text(TEXT.replace(
+        '"free"/>', f'"free"><pose>{numbers}</pose></frame>').encode(), 'm.sdf')
+
+
+SCENE = load_text(TEXT.encode(), 'm.sdf')
 POSE = Pose(*(0.123456789, 0.0, 0.0, *quaternion_from_rpy((0.0, 0.0, 0.123456789))))
 
 
@@ -49,8 +58,12 @@ def written(server):
         """Refuse some poses, as a file cannot say them."""
         if scene.names[element].endswith('fixed') or pose.z > 5.0:
             raise ElementInvalidError('no', scene.place(element))
-        return PoseChange(Change(pose, poses), 1, scene)
-    return poses, PoseEdit(server, ShownScene(SCENE, TfOptions()), change, Events(Event()))
+        return PoseChange(Change(pose, poses), 1, scene_with(pose))
+
+    def show_file(shown):
+        show(edit, scene=shown.loaded, pose=shown.pose_of(edit._frame))
+    edit = PoseEdit(server, ShownScene(SCENE, TfOptions()), change, Events(Event()), show_file)
+    return poses, edit
 
 
 def show(edit, name='free', *, x=0.0, pose=POSE, scene=SCENE, units=UNITS):
@@ -165,7 +178,7 @@ def test_numbers_are_relative_to_the_reference(written):
 
 
 @pytest.mark.parametrize(('name', 'options', 'stays'), [
-    ('free', {'scene': load_text(TEXT, 'm.sdf')}, True), ('free', {'pose': Pose()}, False),
+    ('free', {'scene': scene_with(Pose())}, True), ('free', {'pose': Pose()}, False),
     ('free', {'x': 1.0, 'units': Units(angle=DEGREES)}, True), ('l', {}, False)])
 def test_new_pose_stays_while_its_frame_is_selected_and_does_not_move(
         written, name, options, stays):
@@ -198,22 +211,47 @@ def test_pose_that_cannot_be_written_is_an_error_before_it_is(written):
     assert poses == []
 
 
-def test_what_is_written_is_shown_until_the_file_is_read(written):
+def table(edit):
+    """Return the old and the new numbers."""
+    return [*zip(*re.findall('<tr><td>.*?]</td><td>(.*?)</td><td>(.*?)</td>', edit.html),
+                 strict=True)]
+
+
+def test_what_is_written_is_shown_beside_what_it_replaced(written):
     poses, edit = written
 
-    def labels():
-        return re.findall('<label[^>]*>(.*?)</label>', edit.html)
+    def buttons():
+        return re.findall('<button[^>]*>(.*?)</button>', edit.html)
     show(edit)
-    assert labels() == []
+    assert (buttons(), table(edit)) == ([], [])
     drag(edit, 1.0)
-    assert labels() == [*edit.actions] == ['write to file', 'cancel']
+    numbers = table(edit)
+    assert numbers[1] == ('0.0000', '0.0000', '1.0000', '0.0000', '0.0000', '0.0000')
+    assert buttons() == [*edit.actions] == ['write to file', 'cancel']
     edit.actions['write to file']()
-    show(edit)
-    assert (poses, edit.pose, labels()) == (
-        [Pose(z=1.0)], Pose(z=1.0), ['undo the last write'])
+    assert (poses, edit.pose, buttons()) == ([Pose(z=1.0)], None, ['undo the last write'])
     assert 'written to m.sdf:1<' in edit.html
-    assert 'class="difference"' not in edit.html
-    show(edit, scene=load_text(TEXT, 'm.sdf'))
-    assert edit.pose is None
+    assert (table(edit), texts(edit)) == (numbers, [*numbers[1]])
+    # The file is read again.
+    show(edit, scene=scene_with(Pose(z=1.0)), pose=Pose(z=1.0))
+    assert table(edit) == numbers
     edit.actions['undo the last write']()
     assert 'written to' not in edit.html
+    assert table(edit) == []
+
+
+def test_table_of_a_written_pose_goes_with_the_frame(written):
+    _, edit = written
+    show(edit)
+    drag(edit, 1.0)
+    edit.actions['write to file']()
+    show(edit, 'l')
+    assert table(edit) == []
+
+
+def test_frame_of_the_numbers_is_named(written):
+    _, edit = written
+    edit.refresh(ShownScene(SCENE, TfOptions()), -1, -1, UNITS)
+    assert 'select a frame' in edit._frame_of_numbers.content
+    show(edit)
+    assert 'free in <b>m</b>' in edit._frame_of_numbers.content
