@@ -16,7 +16,11 @@ from sdf_pose_bridge.cli.viewer.frame_texts import escaped, html_of_difference, 
 from sdf_pose_bridge.cli.viewer.server import Events
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.geometry.formats import converted_poses, POSE_FORMATS, PoseFormatError
-from sdf_pose_bridge.geometry.pose_texts import number_from_text
+from sdf_pose_bridge.geometry.pose_texts import (
+    number_from_text,
+    typed_pose_from_text,
+    TypedPose,
+)
 from sdf_pose_bridge.geometry.poses import pose_product, relative_pose
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
 from sdf_pose_bridge.geometry.units import POSE_LABELS, Units
@@ -164,21 +168,26 @@ class PoseEdit:
         reference, pose, units = self._shown_for
         at = relative_pose(reference, pose)
         source = POSE_FORMATS['sdf_rpy']._replace(length=units.length, angle=units.angle)
+        pasted = [text for text in {*typed} - {*self._texts} if len(text.split()) > 1]
         try:
             # Numbers that were not typed keep all their digits.
-            values = [
+            given = typed_pose_from_text(pasted[0], default=source) if pasted else TypedPose([
                 exact * unit.factor if text == shown else number_from_text(text)
                 for exact, text, shown, unit in zip(
                     (*at[:3], *rpy_from_quaternion(at[3:])), typed, self._texts, units.of_pose,
-                    strict=True)]
+                    strict=True)], source)
+            new = Pose(*converted_poses(given.numbers, given.format, 'sdf_quat_xyzw').tolist())
+            # A rotation alone leaves the position.
             pose = pose_product(
-                reference, Pose(*converted_poses(values, source, 'sdf_quat_xyzw').tolist()))
+                reference, new if given.format.position else Pose(*at[:3], *new[3:]))
         except PoseFormatError as error:
             self._refusal = str(error)
             return
-        self._texts, self._shown_for = typed, (reference, pose, units)
-        doubt = source.doubt(values)
-        self._take(pose, *[doubt.question()] if doubt else ())
+        self._texts = typed
+        if not pasted:
+            self._shown_for = reference, pose, units
+        doubt = given.format.doubt(given.numbers, is_written=True)
+        self._take(pose, *given.notes, *[doubt.question()] if doubt else ())
 
     def _take_gizmo(self) -> None:
         if (pose := self._pose_of_gizmo) != self._placed:

@@ -151,6 +151,29 @@ def test_text_that_is_no_number_is_refused(written, typed):
     assert 'class="errors"' not in edit.html
 
 
+@pytest.mark.parametrize(('pasted', 'yaw'), [
+    ('<pose>1 2 3 0 0 0.5</pose>', 0.5), ('1 2 3 0 0 30', math.radians(30)),
+    ('{X 1000, Y 2000, Z 3000, A 30, B 0, C 0}', math.radians(30)),
+    ('x: 0 y: 0 z: 1 w: 0', math.pi)])
+def test_pose_that_is_pasted_into_a_field_is_read_as_by_the_commands(written, pasted, yaw):
+    _, edit = written
+    units, pose = Units(angle=DEGREES), Pose(1.0, 2.0, 3.0)
+    show(edit, pose=pose, units=units)
+    edit._numbers[2].value = pasted
+    show(edit, pose=pose, units=units)
+    assert edit.pose[:3] == (1.0, 2.0, 3.0)
+    assert rpy_from_quaternion(edit.pose[3:]) == pytest.approx((0.0, 0.0, yaw))
+    assert texts(edit)[2] == '3.0000'
+
+
+def test_quaternion_that_is_pasted_and_not_of_length_one_is_asked_about(written):
+    _, edit = written
+    show(edit)
+    edit._numbers[2].value = 'x: 0 y: 0 z: 45 w: 1'
+    show(edit)
+    assert 'the quaternion 0 0 45 1 has the length 45' in edit.html
+
+
 def test_refused_text_goes_when_another_frame_is_selected(written):
     _, edit = written
     show(edit)
