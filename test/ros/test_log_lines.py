@@ -133,9 +133,9 @@ def test_names_and_paths_cannot_write_lines_of_their_own(tmp_path):
 HARMLESS = {
     # Results of the functions of log_lines, or of functions that use them for names.
     'line', 'reason', 'topics.warning',
-    # Numbers, words of this package, and names of topics, which ROS has checked.
+    # Numbers, words of this package, and names of topics and services, which ROS has checked.
     '1000.0 * seconds', 'MOST_PUBLISHERS', 'count', 'len(self._publishers)', 'models', 'name',
-    'key.name', 'self._settings.publish_rate', 'source.name',
+    'key.name', 'self._settings.publish_rate', 'self.name', 'source.name',
 }
 
 
