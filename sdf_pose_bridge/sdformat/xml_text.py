@@ -70,7 +70,7 @@ class _Replacement(NamedTuple):
 _CHARACTERS = _Replacement(
     _NOT_XML, _REPLACEMENT, 'U+{:04X} is no character of XML; it is replaced')
 _ENDS = _Replacement(
-    re.compile('&#x?0*;.*', re.DOTALL), lambda end: _blank(end[0]),
+    re.compile('&#x?0*;.*', re.DOTALL), lambda end: '\n' * end[0].count('\n'),
     'a reference to U+0000 ends the value')
 _SPACES = _Replacement(
     re.compile('[\v\f]|&#(?:0*1[12]|x0*[bcBC]);'), ' ',

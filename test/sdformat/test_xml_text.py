@@ -46,7 +46,7 @@ def test_text_that_libsdformat_refuses_is_not_repaired(text):
     (b'<a>b</a>text<c></c></a>&<?late?>', 'b'),
     (b'<a>b< /a>', 'b'),
     (b'<\f\na>b<\v/a>', 'b'),
-    (b'<a>b&#;c</a>', 'b    '),
+    (b'<a>b&#;c</a>', 'b'),
 ])
 def test_text_of_the_outermost_element(text, content):
     root = root_of(text)
@@ -56,7 +56,7 @@ def test_text_of_the_outermost_element(text, content):
 @pytest.mark.parametrize(('text', 'value'), [
     (b'<a b="c<d"/>', 'c<d'), (b'<a b="c&d"/>', 'c&d'), (b'<a e=""b="c"/>', 'c'),
     (b"<a b='\"'e=\"&\"/>", '"'),
-    (b'<a b="c&#0;d"/>', 'c' + ' ' * 5), (b'<a b="&#xFFFF;\1"/>', '\ufffd' * 2),
+    (b'<a b="c&#0;d"/>', 'c'), (b'<a b="&#xFFFF;\1"/>', '\ufffd' * 2),
     (b'<a b="c&#x7FFFFFFF;"/>', 'c'),
 ])
 def test_value_of_an_attribute(text, value):
