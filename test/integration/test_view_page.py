@@ -327,7 +327,11 @@ def test_frame_is_selected_typed_written_and_cancelled_by_the_keyboard(page, sho
     wait_until_movable(page)
     page.keys('Tab')
     page.wait_for(has_keyboard(control('x [m]')))
-    page.keys(*'0.25', 'Enter')
+    page.keys(*'0.25')
+    page.wait_for(strip_button('write to file'))
+    page.run("window.clicks = 0; window.addEventListener('click', () => { window.clicks++; })")
+    page.keys('Enter')
+    assert page.run('window.clicks') == 0
     page.wait_for(has_keyboard(strip_button('write to file')))
     page.keys('Enter')
     page.wait_for("document.querySelector('.strip').innerText.includes('written to')")

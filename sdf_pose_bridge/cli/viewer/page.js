@@ -225,10 +225,12 @@
     awaited = null;
     if (!target.closest('[role=slider], input, textarea, .rows, .strip')) return;
     event.stopPropagation();
+    // Otherwise the same key presses the button that gets the keyboard.
+    if (key === 'Enter' && target.matches('input')) event.preventDefault();
     if (key === 'Enter' && target.matches(SEARCH)) {
       awaited = `.rows[data-search="${CSS.escape(target.value)}"] [data-ask^=select]`;
     } else if (key === 'Enter' && target.matches(FIELD)) {
-      awaited = '.strip [data-ask]';
+      awaited = '.strip :is([data-ask^=write], [data-ask=cancel])';
     } else if (key === 'Escape' && (target.matches(FIELD) || target.closest('.strip'))) {
       tell('cancel');
     } else if (key.startsWith('Arrow') && target.closest('.rows')) {
