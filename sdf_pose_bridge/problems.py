@@ -80,6 +80,10 @@ class Problems:
         self._errors.more += errors
         self._warnings.more += warnings
 
+    def keeps_errors(self) -> bool:
+        """Return whether another error would be kept."""
+        return len(self._errors) < MOST_PROBLEMS
+
     def keeps_warnings(self) -> bool:
         """Return whether another warning would be kept."""
         return len(self._warnings) < MOST_PROBLEMS

@@ -55,16 +55,17 @@ class _Limits:
         # Freed at the end, as restoring the limits needs some memory, too.
         self._reserve = bytearray(_MEGABYTE)
         self._bytes_read = 0
-        self.raise_for(0)
+        self.raise_for(0, 0.0, 0.0)
 
-    def raise_for(self, byte_count: int) -> None:
-        """Set the limits after so many bytes more were read."""
+    def raise_for(self, byte_count: int, most_s: float, most_bytes: float) -> None:
+        """Set the limits after so many bytes more were read, as :func:`raise_limits`."""
         self._bytes_read += byte_count
         megabytes = self._bytes_read / _MEGABYTE
         processor_s, memory_bytes, more_s, more_bytes = self._allowance
-        self.more_memory_bytes = memory_bytes + megabytes * more_bytes
+        self.more_memory_bytes = max(
+            memory_bytes, min(memory_bytes + megabytes * more_bytes, most_bytes))
         more = {
-            resource.RLIMIT_CPU: processor_s + megabytes * more_s,
+            resource.RLIMIT_CPU: max(processor_s, min(processor_s + megabytes * more_s, most_s)),
             resource.RLIMIT_AS: self.more_memory_bytes}
         for kind, (soft, hard) in self._before.items():
             most = math.ceil(self._used[kind] + more[kind])
@@ -117,8 +118,13 @@ def lift_limits() -> None:
         limits.end()
 
 
-def raise_limits(byte_count: int) -> None:
-    """Raise the limits of :func:`limited` around the caller, if any, for bytes that are read."""
+def raise_limits(byte_count: int, most_s: float, most_bytes: float) -> None:
+    """
+    Raise the limits of :func:`limited` around the caller, if any, for bytes that are read.
+
+    :param most_s: processor time to which the limit is raised at most.
+    :param most_bytes: memory to which the limit is raised at most.
+    """
     limits = _LIMITS.get()
     if limits is not None:
-        limits.raise_for(byte_count)
+        limits.raise_for(byte_count, most_s, most_bytes)

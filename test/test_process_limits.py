@@ -6,7 +6,9 @@ import resource
 import time
 
 import pytest
+from sdf_texts import LINK, model_file
 
+from sdf_pose_bridge import Limits, load_text
 from sdf_pose_bridge.process_limits import (
     Allowance,
     lift_limits,
@@ -44,19 +46,31 @@ def test_other_exceptions_pass():
 
 
 def test_what_is_read_raises_limits():
+    begin_s = time.process_time()
     with limited(AMPLE):
         before = soft_limits()
-        assert 1000 <= before[0] - time.process_time() <= 1001
+        assert begin_s + 1000 <= before[0] < time.process_time() + 1001
         for _ in range(1000):
-            raise_limits(1000)
+            raise_limits(1000, 2000.0, 2e9)
         after = soft_limits()
         assert [b - a for a, b in zip(before, after, strict=True)] == [10, 500_000_000]
         bytearray(1_400_000_000)
 
 
+@pytest.mark.parametrize(('end', 'growth'), [
+    (b' ', [5, 200]), (b'\0', [0, 0])], ids=['ceiling', 'zero byte'])
+def test_a_file_raises_limits_up_to_a_ceiling_and_before_its_first_zero_byte(end, growth):
+    text = model_file(LINK).encode() + end + b' ' * 2_000_000
+    with limited(AMPLE):
+        before = soft_limits()
+        load_text(text, limits=Limits(processor_s=1005, memory_bytes=1_200_000_000))
+        (s_before, bytes_before), (s, byte_count) = before, soft_limits()
+        assert [s - s_before, (byte_count - bytes_before) // 1_000_000] == growth
+
+
 def test_the_message_names_the_raised_limit():
     def read_and_use():
-        raise_limits(1_000_000)
+        raise_limits(1_000_000, 2000.0, 2e9)
         bytearray(1_600_000_000)
 
     with pytest.raises(LimitExceededError, match='more than 1500 MB'), limited(AMPLE):
@@ -65,7 +79,7 @@ def test_the_message_names_the_raised_limit():
 
 def test_nothing_else_is_changed_by_what_is_read():
     before = soft_limits()
-    raise_limits(1_000_000)
+    raise_limits(1_000_000, 2000.0, 2e9)
     assert soft_limits() == before
 
 
@@ -84,7 +98,7 @@ def test_a_lower_limit_of_the_user_stays(kind, limit):
     resource.setrlimit(kind, (limit, before[1]))
     try:
         with limited(allowance):
-            raise_limits(1_000_000)
+            raise_limits(1_000_000, 2000.0, 2e9)
             assert resource.getrlimit(kind) == (limit, before[1])
         if kind == resource.RLIMIT_AS:
             with pytest.raises(MemoryError), limited(allowance):

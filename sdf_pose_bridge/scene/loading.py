@@ -9,6 +9,8 @@ import contextlib
 import gc
 import os
 
+import numpy as np
+
 from sdf_pose_bridge.errors import LimitError, LoadError, Place, SdfError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import SEPARATOR, shortened
@@ -39,6 +41,7 @@ def _without_garbage_collection() -> Iterator[None]:
 
 
 @_without_garbage_collection()
+@np.errstate(all='ignore')  # numbers that overflow are errors of the file
 def load(
     path: str | os.PathLike[str],
     *,
@@ -152,9 +155,10 @@ def _model_by_itself(root: XmlElement, sources: Sources) -> ModelByItself | None
         return None
     model = 1  # element 0 is the implicit root
     place = elements.place_of_pose(model)
-    sources.problems.extend(each for each in part.problems.warnings if each.place == place)
+    warnings = [each for each in part.problems.warnings if each.place == place]
+    sources.problems.extend(warnings)
     link = int(graph.canonical_links[model])
     canonical_link = '' if link == NO_ELEMENT else (
         graph.names[link].removeprefix(f'{graph.names[model]}{SEPARATOR}'))
     pose = Pose(*poses_in_references(elements, graph)[model].tolist())
-    return ModelByItself(canonical_link, pose)
+    return ModelByItself(canonical_link, pose, bool(warnings))

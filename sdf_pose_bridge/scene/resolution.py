@@ -12,6 +12,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.geometry.chains import Indices, poses_along_chains
 from sdf_pose_bridge.geometry.poses import (
     canonical_poses,
@@ -35,18 +36,32 @@ from sdf_pose_bridge.sdformat.joints import JointAxis, Mimic
 
 _Details = TypeVar('_Details')
 _NO_AXIS = JointAxis((0.0, 0.0, 1.0))
+_LARGEST_M = 1e300
+"""Differences of larger coordinates, as in TF, would exceed the range of a double."""
 
 
 def scene_from_graph(
     path: str, elements: Elements, graph: FrameGraph, problems: Problems,
     urdf_root: str | None = None,
 ) -> Scene:
-    """Resolve all poses, and leave out unresolved elements."""
+    """
+    Resolve all poses, and leave out unresolved elements.
+
+    :raises SdfError: if a pose is too large.
+    """
     poses = _root_poses(elements, graph)
     computed_inertials = _place_automatic_inertials(poses, elements)
     count = len(elements.names)
     is_kept = np.ones(count, dtype=bool)
     is_kept[list(graph.unresolved)] = False
+    is_too_large = is_kept & ~(np.abs(poses) <= _LARGEST_M).all(axis=1)
+    # A pose that is relative to such a pose follows from it.
+    for index in np.flatnonzero(is_too_large & ~is_too_large[graph.references]).tolist():
+        msg = (f'the {elements.kind(index).label} "{graph.names[index]}" is not within '
+               f'{_LARGEST_M:g} m of the origin of its world or file; poses that are relative to '
+               'one another add up')
+        problems.error(ElementInvalidError(msg, elements.place_of_pose(index)))
+    problems.raise_errors()
     # The last entry is for index -1.
     new_index = np.append(np.where(is_kept, np.cumsum(is_kept) - 1, NO_ELEMENT), NO_ELEMENT)
     new_index_of: list[int] = new_index.tolist()

@@ -30,6 +30,10 @@ class Limits(NamedTuple):
     """Depth of includes."""
     depth: int = 300
     """Depth of elements; libxml2 allows 256 levels in one file."""
+    processor_s: int = 120
+    """Processor time in s; only in a process with limits, which grow with the size of files."""
+    memory_bytes: int = 4_000_000_000
+    """Memory, likewise."""
 
 
 DEFAULT_LIMITS = Limits()

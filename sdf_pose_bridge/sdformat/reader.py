@@ -97,17 +97,20 @@ def elements_from_tree(
     return _Reader(sources, sources.path(root), shapes=shapes, plugins=plugins).elements(root)
 
 
-def is_valid_element(xml: XmlElement, definition: Definition, sources: Sources) -> bool:
+def is_valid_element(
+    xml: XmlElement, definition: Definition, sources: Sources, *, with_children: bool = True,
+) -> bool:
     """
     Check the attributes and values in an element that is not read with the tree, or before it.
 
+    :param with_children: whether to check its child elements, too.
     :param sources: takes errors and warnings.
     :return: whether there are no errors.
     """
     part = sources.with_own_problems()
     reader = _Reader(part)
     if definition.value is None:
-        reader.read(xml, definition, reader.top)
+        reader.read(xml, definition, reader.top, with_children=with_children)
     else:
         reader.read_value(xml, definition, definition.value, reader.top, NO_ELEMENT)
     part.problems.extend_parent()
@@ -190,7 +193,7 @@ class _Reader:
 
     def read(
         self, xml: XmlElement, definition: Definition, scope: _Scope, parent: int = NO_ELEMENT,
-        depth: int = 1,
+        depth: int = 1, *, with_children: bool = True,
     ) -> None:
         """
         Read an element with content.
@@ -214,7 +217,7 @@ class _Reader:
         if depth > self._most_depth:
             self._sources.check_depth(depth, xml)
         definitions, is_checked = definition.children, scope.is_checked
-        for child in xml:
+        for child in xml if with_children else ():
             child_definition = definitions.get(child.tag)
             if child_definition is None:
                 if not (definition.takes_any_children or is_checked):

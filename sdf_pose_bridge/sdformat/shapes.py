@@ -118,7 +118,10 @@ class Shape(NamedTuple):
     def solid(self) -> Solid | None:
         """Its mass properties; None if they cannot be computed, or a size is not positive."""
         solid = SHAPE_TYPES[self.type].solid
-        return None if solid is None or not self._has_positive_sizes else solid(*self.sizes_m)
+        try:
+            return None if solid is None or not self._has_positive_sizes else solid(*self.sizes_m)
+        except OverflowError:
+            return None
 
 
 def shape_of(xml: XmlElement) -> Shape | None:

@@ -135,7 +135,9 @@ class Sources:
 
     def count_copy(self, xml: XmlElement, user: XmlElement) -> None:
         """Count the elements in a copy for ``user``; raise a LimitError if there are too many."""
-        self.usage.add('copied_elements', int(_NUMBER_OF_ELEMENTS(xml)), self.place(user))
+        count = int(_NUMBER_OF_ELEMENTS(xml))
+        is_refused = count > self.usage.left('copied_elements')
+        self.usage.add('copied_elements', count, self.place(user) if is_refused else Place(''))
 
     def add_path(self, path: str) -> None:
         """Add a file, unless it is known."""

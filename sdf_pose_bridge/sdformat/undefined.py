@@ -49,6 +49,7 @@ class UndefinedReporter:
         self._root = root
         self._hints = _HINTS if root == 'sdf' else {}
         self._found_hints: dict[tuple[str, str], str] = {}
+        self._last: tuple[object, ...] = ()
 
     def report_element(self, xml: XmlElement, parent: Definition) -> None:
         """
@@ -61,6 +62,10 @@ class UndefinedReporter:
         parent_xml = xml.getparent()
         if (not isinstance(xml.tag, str) or ':' in tag or parent_xml is None
                 or self._is_only_counted()):
+            return
+        # Equal elements of one line have one warning, and it takes long to make it again.
+        last, self._last = self._last, (parent_xml, tag, xml.items(), self._sources.line(xml))
+        if last == self._last:
             return
         if tag == 'include':
             # An <include> elsewhere was replaced, or is reported already.

@@ -10,7 +10,8 @@ decides the meaning of names and attributes that newer versions changed. Source:
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Iterator
+from typing import NamedTuple, TypeAlias
 
 from lxml import etree
 
@@ -128,7 +129,7 @@ def convert(root: XmlElement, version: Version, sources: Sources) -> None:
             del pose.attrib['relative_to']
     if allows_scoped_names(version) and sources.may_hold_scoped_names:
         for model in root.iterfind('world/model'):
-            _nest_scoped_elements(model, sources)
+            _nest_scoped_elements(model, sources, {})
 
 
 def _report_deprecated(root: XmlElement, version: Version, sources: Sources) -> None:
@@ -183,7 +184,14 @@ def _convert_axes(root: XmlElement, version: Version, sources: Sources) -> None:
         xyz.set('expressed_in', MODEL_FRAME)
 
 
-def _nest_scoped_elements(model: XmlElement, sources: Sources, depth: int = 1) -> None:
+_References: TypeAlias = dict[XmlElement, list[tuple[XmlElement, str]]]
+"""For each element that was moved, the elements in it with a reference that may have a further
+scope, and the attribute with the reference; '' for the text."""
+
+
+def _nest_scoped_elements(
+    model: XmlElement, sources: Sources, references: _References, depth: int = 1,
+) -> None:
     """
     1.7 to 1.8: move elements named ``nested::name`` into a new model ``nested``, recursively.
 
@@ -200,7 +208,7 @@ def _nest_scoped_elements(model: XmlElement, sources: Sources, depth: int = 1) -
     for child in list(child_elements(model)):
         scope, separator, name = attribute_of(child, 'name').partition(SEPARATOR)
         if child.tag == 'model' and scope and not separator and not is_stopped:
-            _nest_scoped_elements(child, sources, depth + 1)
+            _nest_scoped_elements(child, sources, references, depth + 1)
             is_stopped = True
         part = PARTS_OF_MODEL.get(child.tag)
         if part is None or not part.has_name or not separator or (
@@ -216,12 +224,12 @@ def _nest_scoped_elements(model: XmlElement, sources: Sources, depth: int = 1) -
         if child.tag == 'frame' and name == MODEL_FRAME:
             _replace_model_frame(child, nested_models[scope], prefix)
             continue
-        _remove_prefix_from_references(child, prefix, sources)
+        _remove_prefix_from_references(child, prefix, references, sources)
         child.set('name', name)
         nested_models[scope].append(child)
     for nested_model in nested_models.values():
         model.append(nested_model)
-        _nest_scoped_elements(nested_model, sources, depth + 1)
+        _nest_scoped_elements(nested_model, sources, references, depth + 1)
 
 
 def _replace_model_frame(frame: XmlElement, nested_model: XmlElement, prefix: str) -> None:
@@ -237,32 +245,38 @@ def _replace_model_frame(frame: XmlElement, nested_model: XmlElement, prefix: st
         parent.remove(frame)
 
 
-def _remove_prefix_from_references(xml: XmlElement, prefix: str, sources: Sources) -> None:
+def _remove_prefix_from_references(
+    xml: XmlElement, prefix: str, references: _References, sources: Sources,
+) -> None:
     pose = xml.find('pose')
     if pose is not None:
         # If it is relative to another frame, that is looked up in the new model.
         relative_to = attribute_of(pose, 'relative_to')
         if relative_to.startswith(prefix):
             pose.set('relative_to', relative_to[len(prefix):])
+    before = references[xml] if xml in references else _references_in(xml, pose)
+    references[xml] = []
+    for element, attribute in before:
+        name = attribute_of(element, attribute) if attribute else value_of(element)
+        if name in (WORLD_FRAME, MODEL_FRAME, ''):
+            continue
+        if not name.startswith(prefix):
+            nested = prefix.removesuffix(SEPARATOR)
+            msg = (f'"{name}" cannot be converted: "{nested}" becomes a nested model, in which '
+                   'names of the model around it are not visible')
+            raise ConversionError(msg, sources.place(element))
+        if attribute:
+            element.set(attribute, name[len(prefix):])
+        else:
+            element.text = name[len(prefix):]
+        references[xml].append((element, attribute))
+
+
+def _references_in(xml: XmlElement, pose: XmlElement | None) -> Iterator[tuple[XmlElement, str]]:
     if xml.tag == 'model':
         # References in it are to names in it.
         return
     for element in _ELEMENTS_WITH_REFERENCES(xml):
-        for attribute in REFERENCE_ATTRIBUTES:
-            name = attribute_of(element, attribute)
-            if name and element is not pose:
-                element.set(attribute, _without_prefix(name, prefix, element, sources))
+        yield from ((element, each) for each in REFERENCE_ATTRIBUTES if element is not pose)
     for path, attribute in PARTS_OF_MODEL[xml.tag].references:
-        for end in xml.iterfind(path) if not attribute else ():
-            end.text = _without_prefix(value_of(end), prefix, end, sources)
-
-
-def _without_prefix(name: str, prefix: str, xml: XmlElement, sources: Sources) -> str:
-    if name.startswith(prefix):
-        return name[len(prefix):]
-    if name in (WORLD_FRAME, MODEL_FRAME, ''):
-        return name
-    nested = prefix.removesuffix(SEPARATOR)
-    msg = (f'"{name}" cannot be converted: "{nested}" becomes a nested model, in which names of '
-           'the model around it are not visible')
-    raise ConversionError(msg, sources.place(xml))
+        yield from ((end, '') for end in xml.iterfind(path) if not attribute)

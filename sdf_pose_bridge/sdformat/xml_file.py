@@ -30,7 +30,7 @@ from sdf_pose_bridge.names import hint_from_names, shortened_message
 from sdf_pose_bridge.process_limits import raise_limits
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.templates import hint_about_template
-from sdf_pose_bridge.sdformat.xml_text import repaired, text_from_bytes
+from sdf_pose_bridge.sdformat.xml_text import before_zero_byte, repaired, text_from_bytes
 from sdf_pose_bridge.sdformat.xml_tree import is_foreign, WHITE_SPACE, XmlElement
 
 _PASSING = frozenset({
@@ -181,8 +181,9 @@ def xml_from_file(path: str, usage: Usage, text: bytes | str | None = None) -> X
         if isinstance(text, str):  # whatever encoding it declares
             text = codecs.BOM_UTF8 + text.encode(errors='surrogatepass')
         usage.add('bytes_read', len(text), Place(path))
+    text = before_zero_byte(text)
     # Counted before they are parsed, which takes many times the memory; with comments.
-    raise_limits(len(text))
+    raise_limits(len(text), usage.limits.processor_s, usage.limits.memory_bytes)
     usage.add('elements', text.count(b'<') - text.count(b'</'), Place(path))
     return xml_from_bytes(text, path)
 

@@ -84,6 +84,12 @@ _ESCAPED_BYTES = _Replacement(
 """Results of the error handler ``surrogateescape`` for bytes that are not UTF-8."""
 
 
+def before_zero_byte(content: bytes) -> bytes:
+    """Return XML without its first zero byte and the rest, unless its first bytes are UTF-16."""
+    is_wide = any(content.startswith(mark) for mark, name in _MARKS if name != 'utf-8')
+    return content if is_wide else content.partition(b'\0')[0]
+
+
 def text_from_bytes(content: bytes, path: str) -> tuple[bytes, str, list[tuple[int, str]]]:
     """
     Decode XML by its first bytes or the encoding that it declares.

@@ -22,7 +22,7 @@ import sys
 import tempfile
 from typing import NamedTuple
 
-from growth.families import AROUND, FILES, Files, PARTS
+from growth.families import AROUND, FILES, Files, files_of, PARTS, write
 
 WIDTH = 40
 """Of the column of names."""
@@ -45,12 +45,8 @@ class Load(NamedTuple):
 def measured(files: Files) -> Load:
     """Load files in a process of its own."""
     with tempfile.TemporaryDirectory(prefix='growth_') as folder:
-        for path, text in files.items():
-            file = Path(folder, path)
-            file.parent.mkdir(exist_ok=True, parents=True)
-            file.write_bytes(text.encode(errors='surrogateescape'))
         process = subprocess.run(
-            [sys.executable, '-m', 'growth.measurement', str(Path(folder, 'scene.sdf'))],
+            [sys.executable, '-m', 'growth.measurement', str(write(files, Path(folder)))],
             check=False, capture_output=True, text=True,
             env={**os.environ, 'GZ_FUEL_CACHE_PATH': str(Path(folder, 'fuel'))},
             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (LONGEST_S, LONGEST_S)))
@@ -93,11 +89,6 @@ def row(name: str, family: Callable[[int], Files], most_bytes: int) -> str:
             f'{exponent(first.memory, last.memory, SMALLEST_BYTES):>4}  {last.outcome[:60]}')
 
 
-def file_around(around: str, name: str, n: int) -> Files:
-    """Return a content of a model, and what is around it."""
-    return AROUND[around](PARTS[name](n), n)
-
-
 def main() -> int:
     """Print the table; return 1 if a process was ended."""
     parser = argparse.ArgumentParser(prog='growth', description=__doc__)
@@ -108,9 +99,8 @@ def main() -> int:
     parser.add_argument('--kilobytes', type=int, default=1000, help='size of the files of 4 n')
     options = parser.parse_args()
     families: dict[str, Callable[[int], Files]] = {
-        name: partial(file_around, options.around or 'model', name) for name in PARTS}
-    if options.around is None:
-        families |= FILES
+        name: partial(files_of, name, around=options.around or 'model')
+        for name in (*PARTS, *(FILES if options.around is None else ()))}
     print(f'{"family":{WIDTH}} {"4 n":>7} {"kB":>6} {"s of n, 2 n, 4 n":>20} {"exp.":>4}  '
           f'{"MB more":>17} {"exp.":>4}  outcome of 4 n')
     has_ended = False

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
+from pathlib import Path
 
 Files = Mapping[str, str]
 """Texts by path; ``scene.sdf`` is loaded, and ``fuel`` is the cache of Gazebo Fuel."""
@@ -204,6 +205,14 @@ FILES: dict[str, Callable[[int], Files]] = {
         each(n, '<link name="r"/><frame name="r"/><joint name="r_frame#"/>'), version='1.6')},
     'old name of many scopes': lambda n: scene(
         f'<model name="m"><link name="{"a::" * 240}l">{"<a/>" * n}</link></model>', '1.7'),
+    'scopes of an old name': lambda n: scene(
+        f'<model name="m"><link name="{"a::" * n}l"/></model>', '1.7'),
+    'scopes of an old name with many elements': lambda n: scene(
+        f'<model name="m"><link name="{"a::" * min(n, 240)}l">{"<a/>" * 9000}</link></model>',
+        '1.7'),
+    'references in an old name of many scopes': lambda n: scene(
+        f'<model name="m"><link name="{"a::" * 240}l">'
+        + '<a relative_to="world"/>' * n + '</link></model>', '1.7'),
     # Includes
     'includes': lambda n: {**scene(each(n, NAMED)), 'part.sdf': model('')},
     'includes without a URI in deep models': lambda n: scene(
@@ -215,10 +224,18 @@ FILES: dict[str, Callable[[int], Files]] = {
         **scene(each(n, include('<name>m#</name>', uri='part'))), 'part/model.sdf': model(''),
         'part/model.config': each(n, '<model>|<sdf version="1.9">model.sdf</sdf>|</model>')},
     'missing includes': lambda n: scene(each(n, include(uri='none#.sdf'))),
+    'missing includes beside many files': lambda n: {
+        **scene(each(n, include(uri='none#.sdf'))), **{f'f{i}.txt': '' for i in range(n)}},
     'one missing include': lambda n: scene(include(uri='none.sdf') * n),
     'references into missing includes': lambda n: {'scene.sdf': model(
         include('<name>none</name>', uri='none.sdf')
         + each(n // 40, f'<frame name="f#" attached_to="{"a::" * 300}x"/>'))},
+    'attachments to a missing include': lambda n: scene(
+        include('<name>a0</name>', uri='none.sdf')
+        + each(n, '<frame name="a+" attached_to="a#"/>')),
+    'scopes of a reference into a missing include': lambda n: scene(
+        include('<name>a</name>', uri='none.sdf')
+        + f'<frame name="f" attached_to="{"a::" * n}b"/>'),
     'includes of a broken file': lambda n: {**scene(include() * n), 'part.sdf': '<sdf'},
     'includes in a cycle': lambda n: {'scene.sdf': model(include(uri='scene.sdf') * n)},
     'includes of a file with many tops': lambda n: {
@@ -252,6 +269,8 @@ FILES: dict[str, Callable[[int], Files]] = {
         n, '<link element_id="" name="n#" action="add"/>'), ''),
     'params that remove': lambda n: params(each(
         n, '<link element_id="l#" action="remove"/>'), each(n, '<link name="l#"/>')),
+    'params that replace': lambda n: params(each(
+        n, '<link element_id="l#" name="k#" action="replace"/>'), each(n, '<link name="l#"/>')),
     'params that add includes': lambda n: {**params(each(
         n, f'<model element_id="" name="n#" action="add">{include(uri="other.sdf")}</model>'), ''),
         'other.sdf': model('')},
@@ -259,6 +278,12 @@ FILES: dict[str, Callable[[int], Files]] = {
     'params for children': lambda n: params(
         each(n, '<link element_id="vi">|<visual name="v#" action="remove"/>|</link>'),
         PARTS['visuals'](n)),
+    'params that modify children': lambda n: params(
+        '<link element_id="vi">'
+        + each(n, f'<visual name="v#" action="modify">{POSE}</visual>') + '</link>',
+        each(n, f'<link name="vi">|<visual name="v#">{POSE}</visual>|</link>')),
+    'params for one link of many children': lambda n: params(
+        '<link element_id="vi" name="vi" action="modify"/>' * n, PARTS['visuals'](n)),
     'params with attributes': lambda n: params(
         each(n, '<link element_id="vi" action="modify"| a#="1"|/>'), PARTS['visuals'](n)),
     'params for deep elements': lambda n: params(
@@ -296,6 +321,7 @@ FILES: dict[str, Callable[[int], Files]] = {
     # Not XML
     'no XML': lambda n: {'scene.sdf': '<<&' * 10 * n},
     'open tags': lambda n: {'scene.sdf': '<a>' * 10 * n},
+    'a long tag': lambda n: {'scene.sdf': '<' + 'a' * 20 * n},
     'a tag that does not end': lambda n: {'scene.sdf': '<sdf ' + 'a="1" ' * n},
     'entities': lambda n: {
         'scene.sdf': each(n, '<!DOCTYPE sdf [|<!ENTITY e# "x">|]>') + model('')},
@@ -314,3 +340,17 @@ AROUND: dict[str, Callable[[str, int], Files]] = {
     'params': lambda text, n: params(each(n, UNKNOWN_ID), text),
 }
 """Files around a content of a model, which is as long as they are often."""
+
+
+def files_of(family: str, n: int, around: str = 'model') -> Files:
+    """Return the files of a family, for a content of a model with what is around it."""
+    return AROUND[around](PARTS[family](n), n) if family in PARTS else FILES[family](n)
+
+
+def write(files: Files, folder: Path) -> Path:
+    """Write files into a folder; return the path of the one that is loaded."""
+    for path, text in files.items():
+        file = folder / path
+        file.parent.mkdir(exist_ok=True, parents=True)
+        file.write_bytes(text.encode(errors='surrogateescape'))
+    return folder / 'scene.sdf'

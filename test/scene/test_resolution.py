@@ -4,7 +4,7 @@
 
 import numpy as np
 import pytest
-from sdf_texts import assert_at, fixed_joint, model_file, posed, world_file
+from sdf_texts import assert_at, fixed_joint, model_file, only_error, posed, world_file
 
 from sdf_pose_bridge import load_text
 
@@ -33,6 +33,30 @@ def test_poses_have_no_negative_zeros():
         posed('link', 'a', '-0 -0 -0 0 0 3.141592653589793')
         + posed('link', 'b', '-0 0 0 0 0 3.141592653589793', 'a')))
     assert not (np.signbit(scene.poses) & (scene.poses == 0.0)).any()
+
+
+@pytest.mark.filterwarnings('error')
+@pytest.mark.parametrize(('content', 'tag'), [
+    (posed('frame', 'a', '1e299 0 0 0 0 0') + posed('frame', 'b', '1.7e308 0 0 0 0 0', 'a'),
+     'frame[@name="b"]/pose'),
+    (posed('frame', 'a', '9e307 0 0 0 0 0') + posed('frame', 'b', '1.7e308 0 0 0 0 0', 'a'),
+     'frame[@name="a"]/pose'),
+    (posed('model', 'n', '0 0 -1e301 0 0 0').replace('</model>', '<link name="k"/></model>'),
+     'model[@name="n"]/pose'),
+])
+def test_poses_that_add_up_to_more_than_numbers_hold_are_errors(content, tag):
+    error = only_error(model_file(f'<link name="l"/>{content}'))
+    assert (error.code, error.place.element) == (
+        'ELEMENT_INVALID', f'/sdf/model[@name="m"]/{tag}')
+
+
+@pytest.mark.filterwarnings('error')
+@pytest.mark.parametrize('size', ['1 1 1e200', '1e120 1e120 1e120'])
+def test_automatic_inertial_that_is_too_large_is_an_error(size):
+    error = only_error(model_file(
+        '<link name="l"><inertial auto="true"/><collision name="c"><geometry><box>'
+        f'<size>{size}</size></box></geometry></collision></link>'))
+    assert error.code in ('LINK_INERTIA_INVALID', 'ELEMENT_INVALID')
 
 
 # Placement frames

@@ -9,8 +9,10 @@ is not found or not valid is reported and stays in the tree, so that no error fo
 
 from __future__ import annotations
 
+from functools import cache
 import os
 from pathlib import Path
+from typing import NamedTuple
 
 from lxml import etree
 
@@ -28,12 +30,20 @@ from sdf_pose_bridge.errors import (
     SdfError,
     UriLookupError,
 )
-from sdf_pose_bridge.names import listed, ROOT_FRAME, shortened
+from sdf_pose_bridge.names import (
+    is_reserved,
+    listed,
+    NameIndex,
+    ROOT_FRAME,
+    SEPARATOR,
+    shortened,
+)
 from sdf_pose_bridge.sdformat.documents import Document, document_from_file
 from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.include.merge import merge, ModelByItself, ModelCheck
 from sdf_pose_bridge.sdformat.include.params import apply_params, definition_in_tree, TOP_TAGS
 from sdf_pose_bridge.sdformat.include.uris import (
+    index_of_entries,
     model_file_from_directory,
     ModelFile,
     ResourceFinder,
@@ -54,6 +64,15 @@ from sdf_pose_bridge.sdformat.xml_tree import (
 )
 
 
+class _IncludedFile(NamedTuple):
+    """A file that was read, with the element in it that its includes mean."""
+
+    top: XmlElement | None
+    """None if there is none, or if the file is not valid."""
+    fault: SdfError | None
+    """An error of each of its includes, for the place of the include."""
+
+
 class IncludeExpansion:
     """
     Replaces includes, and reads each included file once.
@@ -67,14 +86,19 @@ class IncludeExpansion:
         skips_missing: bool,
         model_by_itself: ModelCheck,
     ) -> None:
+        self._path_from_uri = cache(finder.path_from_uri)
+        self._other_path_from_uri = cache(finder.other_path_from_uri)
         self._finder = finder
+        self._reason_not_found = cache(self._reason)
+        self._names_in = cache(index_of_entries)
+        self._real_path = cache(os.path.realpath)
         self._sources = sources
         self._skips_missing = skips_missing
         self._model_by_itself = model_by_itself
-        self._files: dict[str, Document | None] = {}
+        self._files: dict[str, _IncludedFile] = {}
         self._model_files: dict[str, ModelFile | str] = {}
         self._reported: set[str] = set()
-        self._merged_models: dict[tuple[XmlElement, str, bytes], ModelByItself | None] = {}
+        self._merged_models: dict[tuple[object, ...], ModelByItself | None] = {}
 
     def expand(self, document: Document) -> None:
         """Replace the includes of a file, in place."""
@@ -110,7 +134,9 @@ class IncludeExpansion:
         if isinstance(found, str):
             self._report_missing(self._sources.place(uri_xml), uri, found)
             return
-        chosen = None if found is None else self._top(include, found)
+        chosen, fault = found
+        if fault is not None:
+            self._sources.error(type(fault), include, fault.message)
         if chosen is None:
             return
         top = self._sources.copy_of(chosen, include)
@@ -132,12 +158,12 @@ class IncludeExpansion:
 
     def _included_file(
         self, place: Place, uri: str, files: tuple[str, ...],
-    ) -> Document | str | None:
-        """Return a file; the reason why it is not found; or None if it cannot be read."""
-        path = self._finder.path_from_uri(uri, place.file)
+    ) -> _IncludedFile | str:
+        """Return a file, or the reason why it is not found."""
+        path = self._path_from_uri(uri, place.file)
         if path is None:
-            return self._finder.reason_not_found(uri, place.file)
-        other = self._finder.other_path_from_uri(uri, place.file)
+            return self._reason_not_found(uri, place.file)
+        other = self._other_path_from_uri(uri, place.file)
         msg = f'"{shortened(uri)}" is read from "{path}"; there is another one, "{other}"'
         if other is not None and msg not in self._reported:
             self._reported.add(msg)
@@ -147,7 +173,7 @@ class IncludeExpansion:
             if isinstance(chosen, str):
                 return chosen
             path = chosen.path
-        real_path = os.path.realpath(path)
+        real_path = self._real_path(path)
         if real_path in files:
             cycle = [*files[files.index(real_path):], real_path]
             names = ' -> '.join(Path(file).name for file in cycle)
@@ -158,6 +184,16 @@ class IncludeExpansion:
             self._sources.includes[path] = place
             self._files[real_path] = self._read(path, (*files, real_path))
         return self._files[real_path]
+
+    def _reason(self, uri: str, file: str) -> str:
+        problems = self._sources.problems
+        # Others are only counted.
+        is_kept = problems.keeps_warnings() if self._skips_missing else problems.keeps_errors()
+        return self._finder.reason_not_found(uri, file, self._names_for_hint) if is_kept else ''
+
+    def _names_for_hint(self, directories: tuple[str, ...]) -> NameIndex:
+        is_allowed = self._sources.problems.allows_hint()
+        return self._names_in(directories if is_allowed else ())
 
     def _model_file(self, directory: str) -> ModelFile | str:
         """Return the model file of a directory, read once, or why there is none."""
@@ -173,21 +209,21 @@ class IncludeExpansion:
             self._model_files[key] = chosen
         return chosen
 
-    def _read(self, path: str, files: tuple[str, ...]) -> Document | None:
+    def _read(self, path: str, files: tuple[str, ...]) -> _IncludedFile:
         try:
             document = document_from_file(path, self._sources, is_included=True)
         except LimitError:
             raise
         except SdfError as error:
             self._sources.problems.extend(error.errors)
-            return None
+            return _IncludedFile(None, None)
         # Its copies are not checked again, except what includes change in them.
         is_valid_element(document.root, definition_of('sdf'), self._sources)
         if next(document.root.iter('include'), None) is not None:
             self._sources.composed_trees.add(document.root)
             self._expand_in(document.root, files)
             self._check_depth(document.root)
-        return document
+        return _included_file(document)
 
     def _check_depth(self, root: XmlElement) -> None:
         """Check the depth before a tree is put into another one; recursion over it is limited."""
@@ -206,32 +242,26 @@ class IncludeExpansion:
         else:
             self._sources.problems.error(UriLookupError(msg, place))
 
-    def _top(self, include: XmlElement, document: Document) -> XmlElement | None:
-        tops = [xml for xml in child_elements(document.root) if xml.tag in TOP_TAGS]
-        if len(tops) > 1:
-            names = listed([described(top) for top in tops])
-            msg = f'{document.path} has more than one element at its top: {names}'
-            self._sources.error(ElementIncorrectTypeError, include, msg)
-        if tops:
-            return min(tops, key=lambda xml: TOP_TAGS.index(str(xml.tag)))
-        # An include at its top that was not found is reported already.
-        if first_child(document.root, 'include') is None:
-            msg = f'{document.path} cannot be included: no model, light or actor is at its top'
-            self._sources.error(ElementMissingError, include, msg)
-        return None
-
     # The place of the included element
 
     def _merge(self, include: XmlElement, top: XmlElement, chosen: XmlElement) -> None:
-        """Merge a copy of a model; includes with the same text share the check by itself."""
-        text = etree.tostring(include, with_tail=False)
-        key = chosen, self._sources.path(include), text
+        """Merge a copy of a model; includes that differ in the name share the check by itself."""
+        name = attribute_of(top, 'name')
+        shared = chosen, self._sources.path(include), *(
+            etree.tostring(each, with_tail=False) for each in include if each.tag != 'name')
+        keys = [shared, (*shared, name)]
+        if is_reserved(name) or SEPARATOR in name:
+            del keys[0]
 
         def model_by_itself(root: XmlElement) -> ModelByItself | None:
-            if key not in self._merged_models:
+            key = next((each for each in keys if each in self._merged_models), None)
+            if key is None:
                 # Its elements are read twice.
                 self._sources.count_copy(root, include)
-                self._merged_models[key] = self._model_by_itself(root)
+                known = self._model_by_itself(root)
+                # Errors and warnings may contain the name.
+                key = keys[-1 if known is None or known.has_warnings else 0]
+                self._merged_models[key] = known
             return self._merged_models[key]
 
         merge(include, top, self._sources, model_by_itself)
@@ -252,6 +282,21 @@ class IncludeExpansion:
 def _is_merge(include: XmlElement) -> bool:
     # libsdformat asks TinyXML-2, which skips white space before a number only.
     return include.get('merge') in TRUE_TEXTS or attribute_of(include, 'merge') == '1'
+
+
+def _included_file(document: Document) -> _IncludedFile:
+    tops = [xml for xml in child_elements(document.root) if xml.tag in TOP_TAGS]
+    top = min(tops, key=lambda xml: TOP_TAGS.index(str(xml.tag)), default=None)
+    fault: SdfError | None = None
+    if len(tops) > 1:
+        names = listed([described(each) for each in tops])
+        msg = f'{document.path} has more than one element at its top: {names}'
+        fault = ElementIncorrectTypeError(msg, Place(document.path))
+    # An include at its top that was not found is reported already.
+    elif top is None and first_child(document.root, 'include') is None:
+        msg = f'{document.path} cannot be included: no model, light or actor is at its top'
+        fault = ElementMissingError(msg, Place(document.path))
+    return _IncludedFile(top, fault)
 
 
 def _name_from_uri(uri: str) -> str:

@@ -54,6 +54,8 @@ class ModelByItself(NamedTuple):
     """The name of its canonical link in it; empty if it has none."""
     pose: Pose
     """Its model frame, in the frame that its ``<pose>`` is relative to."""
+    has_warnings: bool
+    """Whether there are warnings about that pose."""
 
 
 ModelCheck: TypeAlias = Callable[[XmlElement], ModelByItself | None]
@@ -133,7 +135,7 @@ def _proxy_frame(
     proxy.append(proxy_pose)
     sources.set_source(proxy, model)
     sources.set_origin(
-        proxy, pose_file=sources.origin(model).pose_file, include=sources.place(include),
+        proxy, pose_file=sources.origin(model).pose_file, include=sources.origin(model).include,
         is_named_by_include=first_child(include, 'name') is not None,
         placement_frame=name if placement == MODEL_FRAME else placement)
     return proxy

@@ -5,16 +5,9 @@ Change an included model by the parameters of its include (``<experimental:param
 
 Each parameter names an element of the model by ``element_id`` and a change by ``action``: of the
 whole element, or of its children one by one. Source: libsdformat's ``ParamPassing.cc``.
-
-An ``element_id`` joins names by ``::``, from the included model inwards. The search works
-as in libsdformat (``ParamPassing::getElementById``), with its limits: among siblings it selects
-the one whose name is the longest prefix of the id, and continues only inside this one.
 """
 
 from __future__ import annotations
-
-from collections.abc import Iterator
-from itertools import islice
 
 from lxml import etree
 
@@ -25,8 +18,7 @@ from sdf_pose_bridge.errors import (
     ElementInvalidError,
     ElementMissingError,
 )
-from sdf_pose_bridge.names import hint_from_names, scoped_name, SEPARATOR
-from sdf_pose_bridge.problems import Problems
+from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.sdformat.grammar import (
     Definition,
     definition_of,
@@ -34,11 +26,11 @@ from sdf_pose_bridge.sdformat.grammar import (
     PARTS_OF_MODEL,
     STANDALONE_ELEMENTS,
 )
+from sdf_pose_bridge.sdformat.include.element_ids import ElementIds, hint_for_id
 from sdf_pose_bridge.sdformat.joints import DEFAULT_END
 from sdf_pose_bridge.sdformat.reader import is_valid_element
 from sdf_pose_bridge.sdformat.sources import PARAMS_TAG, Sources
 from sdf_pose_bridge.sdformat.xml_tree import (
-    attribute_of,
     child_elements,
     copy_of,
     text_of,
@@ -56,8 +48,6 @@ _POSE_FORMAT_ATTRIBUTES = frozenset({'degrees', 'rotation_format'})
 _PARTS = {
     path.partition('/')[0] for part in PARTS_OF_MODEL.values() for path, _ in part.references}
 """Child elements with references, which are defined in the file of their parent element."""
-_MOST_ELEMENTS_SEARCHED = 10_000
-_LONGEST_ID = 400
 
 
 def apply_params(include: XmlElement, top: XmlElement, sources: Sources) -> list[XmlElement]:
@@ -81,6 +71,7 @@ class _Changer:
     def __init__(self, top: XmlElement, sources: Sources) -> None:
         self.added: list[XmlElement] = []
         self._top = top
+        self._ids = ElementIds(top)
         self._sources = sources
         self._error = sources.error
         self._actions = {
@@ -99,7 +90,7 @@ class _Changer:
             self._report_action(xml)
         elif action == 'add':
             self._add(xml, tag, element_id)
-        elif (target := element_by_id(self._top, element_id, tag)) is None:
+        elif (target := self._ids.element(element_id, tag)) is None:
             hint = hint_for_id(self._top, element_id, self._sources.problems, tag)
             msg = f'the included model has no <{tag}> "{element_id}"{hint}'
             self._error(ElementMissingError, xml, msg)
@@ -116,16 +107,16 @@ class _Changer:
         if not name:
             missing = AttributeMissingError if name is None else AttributeInvalidError
             self._error(missing, xml, f'<{tag}> is to be added, so it needs a name')
-        elif tag != 'plugin' and element_by_id(self._top, scoped, tag) is not None:
+        elif tag != 'plugin' and self._ids.element(scoped, tag) is not None:
             msg = f'<{tag}> cannot be added: the included model has a <{tag}> "{scoped}" already'
             self._error(DuplicateNameError, xml, msg)
-        elif (parent := element_by_id(self._top, element_id) if element_id else self._top) is None:
+        elif (parent := self._ids.element(element_id) if element_id else self._top) is None:
             hint = hint_for_id(self._top, element_id, self._sources.problems)
             msg = (f'<{tag}> cannot be added to element_id="{element_id}": the included model has '
                    f'no such element{hint}')
             self._error(ElementMissingError, xml, msg)
         elif self._is_defined(xml):
-            parent.append(self._new_element(xml))
+            self._append(self._new_element(xml), parent)
 
     def _change_child(self, xml: XmlElement, parent_tag: str, target: XmlElement) -> None:
         tag, action = written_tag(xml), xml.get('action')
@@ -141,7 +132,7 @@ class _Changer:
         elif action == 'add' and tag == 'include':
             self._sources.warning(xml, 'an <include> that is added by itself includes nothing')
         elif action == 'add':
-            target.append(self._new_element(xml))
+            self._append(self._new_element(xml), target)
         elif (found := self._child(target, xml, takes_first=action == 'modify')) is not None:
             self._actions[action](xml, found)
 
@@ -165,13 +156,19 @@ class _Changer:
         self.added.append(element)
         return element
 
+    def _append(self, xml: XmlElement, parent: XmlElement) -> None:
+        parent.append(xml)
+        self._ids.add(xml)
+
     def _replace(self, xml: XmlElement, target: XmlElement) -> None:
         parent = target.getparent()
         if target.get('name') is not None and xml.get('name') is None:
             msg = f'<{written_tag(xml)}> is to replace {_start_tag(target)}, so it needs a name'
             self._error(AttributeMissingError, xml, msg)
         elif parent is not None:
-            parent.replace(target, self._new_element(xml))
+            new = self._new_element(xml)
+            parent.replace(target, new)
+            self._ids.add(new, in_place_of=target)
 
     def _remove(self, xml: XmlElement, target: XmlElement) -> None:
         parent = target.getparent()
@@ -241,21 +238,25 @@ class _Changer:
                 target.set(name, value)
                 is_changed = True
         if is_changed:
+            if 'name' in attributes:
+                self._ids.add(target, in_place_of=target)
             self._set_source(target, xml)
             if definition is not None:
-                is_valid_element(target, definition, self._sources)
+                is_valid_element(target, definition, self._sources, with_children=False)
 
     def _set_source(self, target: XmlElement, xml: XmlElement) -> None:
         """Move the place of an element, and of ancestors up to that with the id, to the params."""
         path = self._sources.path(xml)
         while True:
-            for child in child_elements(target):
-                self._sources.set_origin(child, file=self._sources.path(child))
-            parts = (part for child in child_elements(target, *_PARTS)
-                     for part in child.iter(etree.Element))
-            for part in (target, *parts):
-                if self._sources.path(part) != path:
-                    self._sources.set_source(part, xml)
+            # Once it is in the file of the params, the content has files of its own.
+            if self._sources.path(target) != path:
+                for child in child_elements(target):
+                    self._sources.set_origin(child, file=self._sources.path(child))
+                parts = (part for child in child_elements(target, *_PARTS)
+                         for part in child.iter(etree.Element))
+                for part in (target, *parts):
+                    if self._sources.path(part) != path:
+                        self._sources.set_source(part, xml)
             parent, above = target.getparent(), xml.getparent()
             if parent is None or above is None or xml.get('element_id') is not None:
                 return
@@ -268,17 +269,17 @@ class _Changer:
     ) -> XmlElement | None:
         """Find the child with the tag and the name of a parameter; report it if there is none."""
         tag, name = written_tag(xml), xml.get('name')
-        children = [child for child in child_elements(parent) if written_tag(child) == tag]
-        definition = definition_in_tree(parent)
-        if not children and definition is not None and tag in definition.required_children:
-            children = [etree.SubElement(parent, tag)]
-            self._sources.set_source(children[0], xml)
-        if name is None and children and children[0].get('name') is not None:
-            self._sources.warning(xml, f'<{tag}> has no name; {_start_tag(children[0])} is taken')
-        same = [child for child in children if name is None or child.get('name') == name]
-        found = same[:1] or (children[:1] if takes_first else [])
-        if found:
-            return found[0]
+        first = self._ids.child(parent, tag)
+        definition = definition_in_tree(parent) if first is None else None
+        if definition is not None and tag in definition.required_children:
+            first = etree.SubElement(parent, tag)
+            self._ids.add(first)
+            self._sources.set_source(first, xml)
+        if name is None and first is not None and first.get('name') is not None:
+            self._sources.warning(xml, f'<{tag}> has no name; {_start_tag(first)} is taken')
+        found = first if name is None else self._ids.child(parent, tag, name)
+        if found is not None or (takes_first and first is not None):
+            return found if found is not None else first
         msg = f'{_start_tag(parent)} of the included model has no {_start_tag(xml)}'
         self._error(ElementMissingError, xml, msg)
         return None
@@ -322,62 +323,3 @@ def _start_tag(xml: XmlElement) -> str:
 
 def _is_empty(xml: XmlElement) -> bool:
     return len(xml) == 0 and not text_of(xml)
-
-
-# Look-ups by element_id
-
-def element_by_id(top: XmlElement, element_id: str, tag: str = '') -> XmlElement | None:
-    """Find an element by its id and its tag as written; any tag if that is empty."""
-    start = longest = 0
-    wanted = element_id.encode()  # libsdformat counts bytes
-    match: XmlElement | None = top
-    while match is not None:
-        children, match = child_elements(match), None
-        for child in children:
-            if child.get('name') is None:
-                continue
-            name = attribute_of(child, 'name').encode()
-            if not tag and name == wanted:
-                return child
-            last = start + len(name) - 1
-            if last <= longest or not wanted.startswith(name, start):
-                continue
-            if wanted[start:] == name and tag in ('', written_tag(child)):
-                return child
-            match, longest = child, last
-        start = longest
-        if wanted.startswith(SEPARATOR.encode(), start + 1):
-            start += 1 + len(SEPARATOR)
-    return None
-
-
-def hint_for_id(top: XmlElement, element_id: str, problems: Problems, tag: str = '') -> str:
-    """
-    Return the end of a message about an id that was not found: a likely reason, or the nearest id.
-
-    :param problems: the problems of the load, which limit the number of hints.
-    """
-    if not problems.allows_hint():
-        return ''
-    ids = [*filter(None, islice(_ids(top, ''), _MOST_ELEMENTS_SEARCHED))]
-    tags = [found_tag for found_id, found_tag in ids if found_id == element_id]
-    if tag in tags and len(element_id.split(SEPARATOR)[0].encode()) == 1:
-        return '; libsdformat does not find names of one letter at the top of a model'
-    if tag in tags:
-        return f'; libsdformat finds only the <{tags[0]}> of that name, which comes before it'
-    if tags:
-        return f'; that is a <{tags[0]}>'
-    wanted = (found_id for found_id, found_tag in ids if tag in ('', found_tag))
-    return hint_from_names(element_id, wanted)
-
-
-def _ids(xml: XmlElement, scope: str) -> Iterator[tuple[str, str] | None]:
-    """Iterate over the elements in an element: id and tag, or None if it has no id."""
-    for child in child_elements(xml):
-        name = attribute_of(child, 'name')
-        scoped = scoped_name(scope, name)
-        if name and len(scoped) <= _LONGEST_ID:
-            yield scoped, written_tag(child)
-            yield from _ids(child, scoped)
-        else:
-            yield None

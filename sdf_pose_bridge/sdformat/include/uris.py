@@ -9,17 +9,17 @@ version: ``getModelFilePath`` and ``getBestSupportedModelVersion`` of libsdforma
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import islice
 import os
 from pathlib import Path
 import re
 import shlex
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 from urllib.parse import unquote, urlsplit
 
 from sdf_pose_bridge.errors import AddressError, FileReadError, ParsingError, Place, SdfWarning
-from sdf_pose_bridge.names import hint_from_names, quoted_names, shortened
+from sdf_pose_bridge.names import NameIndex, quoted_names, shortened
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.templates import hint_about_missing_file
 from sdf_pose_bridge.sdformat.versions import NEWEST, version_numbers
@@ -57,6 +57,21 @@ class _Candidate(NamedTuple):
     @property
     def path(self) -> str:
         return os.path.join(self.directory, self.relative)  # noqa: PTH118
+
+
+def _entries(directory: str) -> list[str]:
+    try:
+        return os.listdir(directory or '.')  # noqa: PTH208
+    except OSError:
+        return []
+
+
+def index_of_entries(directories: tuple[str, ...]) -> NameIndex:
+    """Return the names of all files and directories in some directories."""
+    return NameIndex(entry for each in directories for entry in _entries(each))
+
+
+_NamesIn: TypeAlias = Callable[[tuple[str, ...]], NameIndex]
 
 
 class ResourceFinder(NamedTuple):
@@ -159,8 +174,15 @@ class ResourceFinder(NamedTuple):
         msg = f'"{address}" {fault}'
         raise AddressError(msg)
 
-    def reason_not_found(self, uri: str, including_file: str) -> str:
-        """Return the reason why :meth:`path_from_uri` finds no path for a URI, with a remedy."""
+    def reason_not_found(
+        self, uri: str, including_file: str,
+        names_in: _NamesIn = index_of_entries,
+    ) -> str:
+        """
+        Return the reason why :meth:`path_from_uri` finds no path for a URI, with a remedy.
+
+        :param names_in: returns the names in folders that a message may suggest.
+        """
         scheme, name = _scheme_and_name(uri)
         if scheme in _WEB:
             # A longer message would be cut in its middle.
@@ -170,7 +192,8 @@ class ResourceFinder(NamedTuple):
             return 'it comes with Gazebo Classic, and no frame needs it'
         folder, missing = self._deepest_folder(uri, including_file)
         if folder:
-            return f'"{folder}" has no "{missing}"{_hint_about_missing(missing, [folder])}'
+            hint = _hint_about_missing(missing, (folder,), names_in)
+            return f'"{folder}" has no "{missing}"{hint}'
         directories = [*dict.fromkeys(
             each.directory or '.' for each in self._candidates(uri, including_file)
             if not each.is_owner)] or ['.']
@@ -181,7 +204,7 @@ class ResourceFinder(NamedTuple):
         elsewhere = _directory_near(including_file, first)
         if elsewhere:
             return f'{reason}, but in "{elsewhere}"; add that to resource_paths'
-        hint = '' if rest else _hint_about_missing(first, directories)
+        hint = '' if rest else _hint_about_missing(first, tuple(directories), names_in)
         return f'{reason}; resource_paths and GZ_SIM_RESOURCE_PATH add directories{hint}'
 
     def _deepest_folder(self, uri: str, including_file: str) -> tuple[str, str]:
@@ -322,18 +345,10 @@ def _directory_near(file: str, name: str) -> str:
     return ''
 
 
-def _hint_about_missing(name: str, directories: Sequence[str]) -> str:
+def _hint_about_missing(name: str, directories: tuple[str, ...], names_in: _NamesIn) -> str:
     """Return the template of a missing file, or else the nearest name, as the end of a message."""
     hints = (hint_about_missing_file(f'{each}/{name}') for each in directories)
-    return next(filter(None, hints), '') or hint_from_names(
-        name, [entry for each in directories for entry in _entries(each)])
-
-
-def _entries(directory: str) -> list[str]:
-    try:
-        return os.listdir(directory or '.')  # noqa: PTH208
-    except OSError:
-        return []
+    return next(filter(None, hints), '') or names_in(directories).hint(name)
 
 
 # Directories of models

@@ -18,6 +18,7 @@ Materials, and values that only physics needs, are not converted.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import cache
 from itertools import chain
 import math
 from types import MappingProxyType
@@ -101,6 +102,8 @@ class _Conversion:
             joint.xml.get('name'): joint.name for joint in robot.parent_joints.values()}
         self._model = self._add(self._sdf, 'model', root, name=robot.name)
         self._extensions = dict(robot.extensions)
+        # Most elements of a link have the same pose, which is moved along many links.
+        self._pose_in_base = cache(self._pose_in_base)  # type: ignore[method-assign]
         self._bases = bases_of_links(robot)
         self._inertials = lumped_inertials(robot, self._bases, skips_massless=for_ros)
         self._leave_out_content_of_lumped_joints()
@@ -367,17 +370,21 @@ class _Conversion:
                 'where a fixed joint is removed')
             pose.attrib.clear()
         words = words_of(text_of(pose) or '0 0 0 0 0 0')[:6]
-        numbers = [number for word in words for number in number_from_word(word)]
-        name = link.name
-        while self._bases[name].link.name != name:
-            if len(numbers) != 6 or not all(map(math.isfinite, numbers)):
-                return
+        numbers = tuple(number for word in words for number in number_from_word(word))
+        pose.text = self._pose_in_base(link.name, numbers) or pose.text
+
+    def _pose_in_base(self, name: str, numbers: Sequence[float]) -> str:
+        """Return a pose in a lumped link as one in the link that this is lumped into, or ''."""
+        text = ''
+        while self._bases[name].link.name != name and len(numbers) == 6 and (
+                all(map(math.isfinite, numbers))):
             joint = self._robot.parent_joints[name]
             moved = pose_product(joint.origin, pose_from_xyz_rpy(numbers[:3], numbers[3:]))
             # libsdformat writes six digits at each step.
-            pose.text = text_from_numbers([*moved[:3], *rpy_by_urdfdom(moved)], 6)
-            numbers = list(map(float, words_of(pose.text)))
+            text = text_from_numbers([*moved[:3], *rpy_by_urdfdom(moved)], 6)
+            numbers = list(map(float, words_of(text)))
             name = joint.parent
+        return text
 
     def _replace_lumped_ends_of_joints(self) -> None:
         for joint in chain.from_iterable(self._extensions.values()):

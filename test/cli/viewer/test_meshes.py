@@ -253,7 +253,7 @@ def test_kept_meshes_are_not_too_large_together(named, reader, monkeypatch):
 
 def test_meshes_have_one_processor_time_together(named, reader, monkeypatch):
     first = named('a.stl', mesh_texts.STL.format(y=1))
-    assert 0.0 < meshes.ALLOWANCE.processor_s - reader.left_s < 5.0
+    assert reader.left_s < meshes.ALLOWANCE.processor_s
     reader.left_s = 0.0
     assert named('a.stl') is first
     reason = 'all meshes together need more than 20 s of processor time'

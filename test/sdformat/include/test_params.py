@@ -6,10 +6,7 @@ import pytest
 from sdf_texts import assert_at, errors_of_file, model_file, names_of, only_error, write_files
 
 import sdf_pose_bridge
-from sdf_pose_bridge.problems import Problems
-from sdf_pose_bridge.sdformat.include.params import element_by_id, hint_for_id
 from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS
-from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
 
 BOX = '<geometry><box><size>1 1 1</size></box></geometry>'
 ARM = f"""<sdf version="1.9"><model name="arm">
@@ -334,61 +331,3 @@ def test_format_of_a_pose_is_that_of_its_next_text(tmp_path, pose, params, is_ou
     path = with_params(tmp_path, pose, params, modified(text, 'inner::base')) if is_outer else (
         with_params(tmp_path, pose, params + modified(text)))
     assert_at(sdf_pose_bridge.load(path), 'm::middle::inner::base', (1, 0, 0, 0, 0, 1, 0))
-
-
-# Elements that parameters name, found as libsdformat finds them, with its limits
-
-IDS = """<model name="arm">
-<pose>0 0 0 0 0 0</pose>
-<link name="base"><visual name="shape"/><collision name="shape"/><sensor name="eye"/></link>
-<link name="h"/>
-<link name="ö"/>
-<link name="hand"/>
-<link name="hand_left"><visual name="palm"/></link>
-<frame name="grip"/>
-<x:thing name="thing"/>
-<model name="tool"><link name="p"/><frame name="tip"/>
-<model name="inner"><frame name="end"/></model></model>
-</model>"""
-
-
-@pytest.fixture(scope='module')
-def arm():
-    return xml_from_bytes(IDS.encode(), 'f').root
-
-
-@pytest.mark.parametrize(('element_id', 'tag'), [
-    ('none', ''), ('', ''), ('arm', ''), ('arm::base', ''), ('base::none', ''), ('shape', ''),
-    ('tip', ''), ('Base', ''), ('bas', ''), ('base:shape', ''), ('base::', 'visual'),
-    ('base', 'frame'), ('base::shape', 'sensor'), ('tool::tip', 'link'), ('tool::end', 'frame'),
-    # What libsdformat does not find: names of one letter at the top, and what has the name of an
-    # element before it.
-    ('h', 'link'), ('base::shape', 'collision'),
-])
-def test_unknown_id_is_not_found(arm, element_id, tag):
-    assert element_by_id(arm, element_id, tag) is None
-
-
-@pytest.mark.parametrize(('element_id', 'tag', 'name'), [
-    ('base', '', 'base'), ('base', 'link', 'base'), ('base::shape', 'visual', 'shape'),
-    ('base::eye', 'sensor', 'eye'), ('grip', 'frame', 'grip'), ('tool', 'model', 'tool'),
-    ('tool::tip', '', 'tip'), ('tool::inner::end', 'frame', 'end'), ('thing', 'x:thing', 'thing'),
-    ('hand_left::palm', 'visual', 'palm'), ('tool::p', 'link', 'p'), ('h', '', 'h'),
-    ('ö', 'link', 'ö'),  # two bytes
-])
-def test_element_is_found(arm, element_id, tag, name):
-    found = element_by_id(arm, element_id, tag)
-    assert found.get('name') == name
-
-
-@pytest.mark.parametrize(('element_id', 'tag', 'hint'), [
-    ('zzz', '', ''),
-    ('tool::top', 'frame', '; did you mean "tool::tip"?'),
-    ('grp', '', '; did you mean "grip"?'),
-    ('tool::tip', 'link', '; that is a <frame>'),
-    ('h', 'link', '; libsdformat does not find names of one letter at the top of a model'),
-    ('base::shape', 'collision',
-     '; libsdformat finds only the <visual> of that name, which comes before it'),
-])
-def test_hint_for_an_id_that_was_not_found(arm, element_id, tag, hint):
-    assert hint_for_id(arm, element_id, Problems(['a.sdf']), tag) == hint
