@@ -153,8 +153,9 @@ def print_table(labels: Sequence[str], rows: Sequence[TableRow]) -> None:
     """
     rows = [
         row._replace(
-            name=printable(row.name), kind=_SHORT_KINDS.get(row.kind, row.kind),
-            values=row.values or ('',) * len(labels), branches=_branches(row.branches))
+            name=printable(row.name[-2 * _WIDEST_NAME:]),
+            kind=_SHORT_KINDS.get(row.kind, row.kind), branches=_branches(row.branches),
+            values=row.values or ('',) * len(labels))
         for row in (TableRow('frame', 'kind', labels), *rows)]
     widths = [max(map(len, column)) for column in zip(*(row.values for row in rows), strict=True)]
     kind_width = max(len(row.kind) for row in rows)
