@@ -195,10 +195,7 @@ class JointStates:
         with contextlib.suppress(InvalidHandle):  # the node was destroyed
             while not self._has_to_end:
                 self._processed.clear()
-                with self._failures.noted(self._processed):
-                    self._turn()
-                    if self._processed:
-                        self._failures.note_success()
+                self._failures.attempt(self._processed, None, self._turn)
         self._wait_set.close()
         self._make_calls(len(self._calls))
 
@@ -234,6 +231,7 @@ class JointStates:
         for function in [each for each, due in self._due.items() if due <= time.monotonic()]:
             del self._due[function]
             function()
+        self._failures.note_success(self._processed)
 
     def _longest_wait(self) -> float:
         seconds = min(self._due.values(), default=math.inf) - time.monotonic()
@@ -288,7 +286,9 @@ class JointStates:
         # many messages does not delay the others.
         ends_at = time.monotonic() + TOPICS_PERIOD_S
         while sources and time.monotonic() < ends_at:
-            sources = [source for source in sources if self._take_one(source, newest)]
+            sources = [
+                each for each in sources
+                if self._failures.attempt([each], True, each.take, self._effects, newest)]
             if at_once:
                 self._publish(self._move_all(newest))
                 newest.clear()
@@ -297,18 +297,10 @@ class JointStates:
                     return
         self._period.add(self._move_all(newest))
 
-    def _take_one(self, source: StateSource, newest: dict[Effect, Message]) -> bool:
-        with self._failures.noted([source]):
-            return source.take(self._effects, newest)
-        return True
-
     def _move_all(self, newest: Mapping[Effect, Message]) -> NDArray[np.intp]:
-        parts = []
-        for message in newest.values():
-            with self._failures.noted([message.effect.source]):
-                parts.append(self._move(message))
-                self._processed.add(message.effect.source)
-        return union(parts)
+        return union([
+            self._failures.attempt([each.effect.source], NO_ROWS, self._move, each)
+            for each in newest.values()])
 
     def _follow_clock(self) -> None:
         """Accept any stamp after time has jumped back, for example when a bag starts again."""
@@ -350,6 +342,7 @@ class JointStates:
         moved = target.frames.stamp(rows, stamp_ns, ignore_stamps=ignores_stamps)
         if len(rows) and not len(moved):
             self._effects.note_lateness(effect, stamp_ns, self._now_ns)
+        self._processed.add(source)
         return moved
 
     # Publication

@@ -4,17 +4,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
-import contextlib
+from collections.abc import Callable, Collection
 import math
 import time
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 from sdf_pose_bridge.names import printable
 
 LONGEST_S = 10.0
 """Time in s after which failures of all messages are those of the node; a failure is forgotten
 after the same time."""
+
+
+_Result = TypeVar('_Result')
 
 
 class Source(Protocol):
@@ -43,37 +45,37 @@ class MessageFailures:
     """
 
     def __init__(
-        self, log: Callable[[], object], *raised: type[BaseException],
+        self, log: Callable[[], object], *raised: type[Exception],
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._log, self._clock = log, clock
-        self._raised: tuple[type[BaseException], ...] = AllMessagesFailError, *raised
+        self._raised: tuple[type[Exception], ...] = AllMessagesFailError, *raised
         # By source, the time of its last failure and a line.
         self._last: dict[Source, tuple[float, str]] = {}
         self._since = math.inf
 
-    @contextlib.contextmanager
-    def noted(self, sources: Collection[Source]) -> Iterator[None]:
-        """Note an error in messages of sources, and go on after it if it is not the node's."""
+    def attempt(
+        self, sources: Collection[Source], default: _Result, function: Callable[..., _Result],
+        *arguments: object,
+    ) -> _Result:
+        """
+        Call a function that processes messages of sources.
+
+        :return: its result, or the default after an error, which is noted.
+        :raises AllMessagesFailError: if the node has a defect.
+        """
         try:
-            yield
+            return function(*arguments)
         except self._raised:
             raise
-        except Exception as error:  # includes defects
-            now, self._last = self._clock(), self._recent()
-            self._since = min(self._since, now) if self._last else now
-            self._log()
-            for source in sources:
-                self._last[source] = now, (
-                    f'internal error in messages of {source.name}: {printable(str(error))}')
-            names = {name for each in self._last for name in each.publishers()}
-            if sources and now - self._since >= LONGEST_S and len(names) > 1:
-                msg = f'no message could be processed for {LONGEST_S:g} s'
-                raise AllMessagesFailError(msg) from error
+        except Exception as error:  # noqa: BLE001 - includes defects
+            self._note(error, sources)
+            return default
 
-    def note_success(self) -> None:
-        """Note that a message was processed."""
-        self._since = math.inf
+    def note_success(self, sources: Collection[Source]) -> None:
+        """Note that messages of sources were processed."""
+        if sources:
+            self._since = math.inf
 
     def problems(self) -> list[str]:
         """Return a line for each source with a failure not long ago."""
@@ -82,3 +84,15 @@ class MessageFailures:
     def _recent(self) -> dict[Source, tuple[float, str]]:
         least = self._clock() - LONGEST_S
         return {each: last for each, last in self._last.copy().items() if last[0] >= least}
+
+    def _note(self, error: Exception, sources: Collection[Source]) -> None:
+        now, self._last = self._clock(), self._recent()
+        self._since = min(self._since, now) if self._last else now
+        self._log()
+        for source in sources:
+            self._last[source] = now, (
+                f'internal error in messages of {source.name}: {printable(str(error))}')
+        names = {name for each in self._last for name in each.publishers()}
+        if sources and now - self._since >= LONGEST_S and len(names) > 1:
+            msg = f'no message could be processed for {LONGEST_S:g} s'
+            raise AllMessagesFailError(msg) from error
