@@ -25,11 +25,8 @@ from sdf_pose_bridge.scene.comparison import names_of_moved
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.pose_setting import pose_change
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.include.uris import (
-    model_file_from_directory,
-    ModelFile,
-    resource_finder,
-)
+from sdf_pose_bridge.sdformat.include.manifests import model_file_from_directory, ModelFile
+from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file, xml_from_bytes
 from sdf_pose_bridge.tf.joint_positions import JointPositions

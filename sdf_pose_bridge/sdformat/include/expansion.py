@@ -40,14 +40,10 @@ from sdf_pose_bridge.names import (
 )
 from sdf_pose_bridge.sdformat.documents import Document, document_from_file
 from sdf_pose_bridge.sdformat.grammar import definition_of
+from sdf_pose_bridge.sdformat.include.manifests import model_file_from_directory, ModelFile
 from sdf_pose_bridge.sdformat.include.merge import merge, ModelByItself, ModelCheck
 from sdf_pose_bridge.sdformat.include.params import apply_params, definition_in_tree, TOP_TAGS
-from sdf_pose_bridge.sdformat.include.uris import (
-    index_of_entries,
-    model_file_from_directory,
-    ModelFile,
-    ResourceFinder,
-)
+from sdf_pose_bridge.sdformat.include.uris import index_of_entries, ResourceFinder
 from sdf_pose_bridge.sdformat.reader import is_valid_element
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.values import TRUE_TEXTS

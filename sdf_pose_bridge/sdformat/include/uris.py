@@ -3,8 +3,7 @@
 """
 Find the files that URIs name: in search paths, in ROS packages and in Gazebo's Fuel cache.
 
-Nothing is ever downloaded. In the directory of a model, its ``model.config`` names a file for each
-version: ``getModelFilePath`` and ``getBestSupportedModelVersion`` of libsdformat.
+Nothing is ever downloaded.
 """
 
 from __future__ import annotations
@@ -18,13 +17,10 @@ import shlex
 from typing import NamedTuple, TypeAlias
 from urllib.parse import unquote, urlsplit
 
-from sdf_pose_bridge.errors import AddressError, FileReadError, ParsingError, Place, SdfWarning
-from sdf_pose_bridge.names import NameIndex, quoted_names, shortened
-from sdf_pose_bridge.sdformat.limits import Usage
+from sdf_pose_bridge.errors import AddressError
+from sdf_pose_bridge.names import NameIndex, quoted_names
+from sdf_pose_bridge.sdformat.include.manifests import MANIFEST
 from sdf_pose_bridge.sdformat.templates import hint_about_missing_file
-from sdf_pose_bridge.sdformat.versions import NEWEST, version_numbers
-from sdf_pose_bridge.sdformat.xml_file import xml_from_file
-from sdf_pose_bridge.sdformat.xml_tree import attribute_of, child_elements, first_child, value_of
 
 _SCHEME = re.compile(r'([A-Za-z][A-Za-z0-9+.-]*)://')
 _SCHEME_OF_ADDRESS = re.compile(r'[A-Za-z][A-Za-z0-9+.-]+(?=:/)')
@@ -319,7 +315,7 @@ def _is_root_of(directory: Path, name: str) -> bool:
     """Return whether a directory is that of a model or a package."""
     manifest = directory / 'package.xml'
     try:
-        return (directory.name == name and os.path.isfile(directory / _NAME)) or (  # noqa: PTH113
+        return (directory.name == name and os.path.isfile(directory / MANIFEST)) or (  # noqa: PTH113
             manifest.is_file()
             and f'<name>{name}</name>' in manifest.read_text(errors='replace'))
     except OSError:
@@ -349,57 +345,3 @@ def _hint_about_missing(name: str, directories: tuple[str, ...], names_in: _Name
     """Return the template of a missing file, or else the nearest name, as the end of a message."""
     hints = (hint_about_missing_file(f'{each}/{name}') for each in directories)
     return next(filter(None, hints), '') or names_in(directories).hint(name)
-
-
-# Directories of models
-
-_NAME = 'model.config'
-_DEPRECATED_NAME = 'manifest.xml'
-
-
-class ModelFile(NamedTuple):
-    """The model file that the manifest of a directory names."""
-
-    path: str
-    manifest: str
-    warnings: tuple[SdfWarning, ...]
-
-
-def model_file_from_directory(directory: str, usage: Usage) -> ModelFile:
-    """
-    Choose the file of the newest version that is supported.
-
-    :return: the file, which need not exist.
-    :raises SdfError: if there is no manifest that names a file.
-    """
-    # Unlike Path.exists, this returns False for a directory without permission.
-    manifests = [
-        name for name in (_NAME, _DEPRECATED_NAME)
-        if os.path.exists(Path(directory, name))]  # noqa: PTH110
-    if not manifests:
-        msg = f'the directory has no {_NAME}, which would name the file to read'
-        raise FileReadError(msg, Place(directory))
-    manifest = str(Path(directory, manifests[0]))
-    warnings = []
-    if manifests[0] == _DEPRECATED_NAME:
-        msg = f'{_DEPRECATED_NAME} is deprecated; it should be called {_NAME}'
-        warnings.append(SdfWarning('WARNING', msg, Place(manifest)))
-    file = xml_from_file(manifest, usage)
-    root = file.root
-    warnings += file.warnings
-    versions = {}
-    for entry in child_elements(root, 'sdf'):
-        version = version_numbers(attribute_of(entry, 'version'))
-        if version > NEWEST:
-            written = shortened(entry.get('version', ''))
-            msg = f'version {written} of the model is newer than {NEWEST} and skipped'
-            place = Place(manifest, entry.sourceline or 0, '/model/sdf')
-            warnings.append(SdfWarning('WARNING', msg, place))
-        else:
-            versions[entry] = version
-    chosen = max(versions, key=versions.__getitem__, default=first_child(root, 'sdf'))
-    name = '' if chosen is None else value_of(chosen)
-    if root.tag != 'model' or chosen is None or not name:
-        msg = 'the manifest names no file: it has no <sdf> in a <model>'
-        raise ParsingError(msg, Place(manifest, root.sourceline or 0))
-    return ModelFile(str(Path(directory, name)), manifest, tuple(warnings))
