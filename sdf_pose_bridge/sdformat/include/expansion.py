@@ -85,7 +85,8 @@ class IncludeExpansion:
         self._path_from_uri = cache(finder.path_from_uri)
         self._other_path_from_uri = cache(finder.other_path_from_uri)
         self._finder = finder
-        self._reason_not_found = cache(self._reason)
+        # Not a cache of the method, which only a search for garbage would free.
+        self._reasons: dict[tuple[str, str], str] = {}
         self._names_in = cache(index_of_entries)
         self._real_path = cache(os.path.realpath)
         self._sources = sources
@@ -181,11 +182,14 @@ class IncludeExpansion:
             self._files[real_path] = self._read(path, (*files, real_path))
         return self._files[real_path]
 
-    def _reason(self, uri: str, file: str) -> str:
-        problems = self._sources.problems
-        # Others are only counted.
-        is_kept = problems.keeps_warnings() if self._skips_missing else problems.keeps_errors()
-        return self._finder.reason_not_found(uri, file, self._names_for_hint) if is_kept else ''
+    def _reason_not_found(self, uri: str, file: str) -> str:
+        if (uri, file) not in self._reasons:
+            problems = self._sources.problems
+            # Others are only counted.
+            is_kept = problems.keeps_warnings() if self._skips_missing else problems.keeps_errors()
+            self._reasons[uri, file] = self._finder.reason_not_found(
+                uri, file, self._names_for_hint) if is_kept else ''
+        return self._reasons[uri, file]
 
     def _names_for_hint(self, directories: tuple[str, ...]) -> NameIndex:
         is_allowed = self._sources.problems.allows_hint()
