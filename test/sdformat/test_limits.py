@@ -159,7 +159,7 @@ def test_time_grows_with_the_size_of_a_file_and_not_faster(tmp_path, family):
     paths = [write(each, tmp_path / str(number)) for number, each in enumerate((
         files, files_of(family, n // 2), files_of('links with poses', links)))]
     shortest_s = [math.inf] * 3
-    for turn in range(10):
+    for turn in range(40):
         # Other processes share the caches of the machine: the shortest of three or more counts.
         shortest_s = list(map(min, shortest_s, map(processor_s, paths)))
         hostile_s, half_s, plain_s = shortest_s
