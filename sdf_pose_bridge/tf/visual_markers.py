@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -13,11 +14,16 @@ from sdf_pose_bridge.errors import SdfError, SdfWarning
 from sdf_pose_bridge.geometry.poses import Pose, pose_product
 from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.names import shortened
-from sdf_pose_bridge.problems import Problems
+from sdf_pose_bridge.problems import MOST_PROBLEMS, Problems
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.sdformat.include.uris import resource_finder, ResourceFinder
+from sdf_pose_bridge.sdformat.include.uris import (
+    index_of_entries,
+    NamesIn,
+    resource_finder,
+    ResourceFinder,
+)
 from sdf_pose_bridge.sdformat.shape_types import Primitive
 from sdf_pose_bridge.sdformat.shapes import Shape
 from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadRequest
@@ -73,7 +79,7 @@ def visual_markers_from_scene(
     """
     is_shown = (
         elements_in_model(scene, model) & (scene.roots == 0) & (scene.kinds == Kind.VISUAL))
-    problems = Problems(scene.files)
+    problems, names_in = Problems(scene.files), cache(index_of_entries)
     hidden: dict[tuple[str, int, str], list[int]] = {}
     markers: list[VisualMarker] = []
     point_count = 0
@@ -83,7 +89,9 @@ def visual_markers_from_scene(
         link = int(scene.parents[element])
         frame = int(tree.nearest_frames[link])
         place = scene.place(element)
-        found = _markers_from_shape(shape, place.file, finder)
+        # Further reasons are only counted.
+        found = _markers_from_shape(
+            shape, place.file, finder, names_in if len(hidden) < MOST_PROBLEMS else None)
         if frame == NO_PARENT and not isinstance(found, str):
             found = 'neither its link nor a frame above that in TF is published'
         if isinstance(found, str):
@@ -146,14 +154,15 @@ def markers_from_text(
 
 
 def _markers_from_shape(
-    shape: Shape, file: str, finder: ResourceFinder,
+    shape: Shape, file: str, finder: ResourceFinder, names_in: NamesIn | None,
 ) -> list[VisualMarker] | str:
     """Return the markers of a shape in the frame of its visual, or why it cannot be shown."""
     if shape.type == 'mesh':
         uri = finder.uri_for_others(shape.mesh_uri, file)
         if uri is None:
-            return (f'the mesh "{shortened(shape.mesh_uri)}" is not found: '
-                    f'{finder.reason_not_found(shape.mesh_uri, file)}')
+            reason = '' if names_in is None else (
+                f': {finder.reason_not_found(shape.mesh_uri, file, names_in)}')
+            return f'the mesh "{shortened(shape.mesh_uri)}" is not found{reason}'
         return [VisualMarker('MESH_RESOURCE', shape.mesh_scale, mesh_resource=uri)]
     if shape.reason_without_surface:
         return shape.reason_without_surface

@@ -47,6 +47,8 @@ class PoseEdit:
         self._change: PoseChange | None = None
         self._looked_at: tuple[object, ...] = ()
         self._notes: tuple[str, ...] = ()
+        self._question = ''
+        """A question about the typed numbers, which writing them answers."""
         self._errors: list[str] = []
         self._refusal = ''
         """The reason why a typed text is rejected."""
@@ -128,7 +130,7 @@ class PoseEdit:
         """The actions that are possible now, by the labels to click."""
         actions: dict[str, Callable[[], object]] = {}
         if self.pose is not None and not self._refusal:
-            actions['write to file'] = self._write_pose
+            actions['write anyway' if self._question else 'write to file'] = self._write_pose
         if self.pose is not None or self._refusal:
             actions['cancel'] = partial(self._take, None)
         if self._undone is not None:
@@ -150,11 +152,12 @@ class PoseEdit:
         buttons = (f'<button data-ask="{label}">{label}</button>' for label in self.actions)
         # Before anything is changed, they are only the reason why nothing can be.
         errors = html_of_lines('errors' if self.pose else 'errors_of_setting', self._errors)
-        notes = html_of_lines('errors', filter(None, (*self._notes, self._refusal)))
+        notes = html_of_lines(
+            'errors', filter(None, (*self._notes, self._question, self._refusal)))
         return f'{text}{notes}{errors}{"".join(buttons)}'
 
-    def _take(self, pose: Pose | None, *notes: str) -> None:
-        self.pose, self._notes = pose, notes
+    def _take(self, pose: Pose | None, *notes: str, question: str = '') -> None:
+        self.pose, self._notes, self._question = pose, notes, question
         if pose is None:
             self._errors, self._refusal = [], ''
             # Also clear the rejected text.
@@ -187,7 +190,7 @@ class PoseEdit:
         if not pasted:
             self._shown_for = reference, pose, units
         doubt = given.format.doubt(given.numbers, is_written=True)
-        self._take(pose, *given.notes, *[doubt.question()] if doubt else ())
+        self._take(pose, *given.notes, question=doubt.question() if doubt else '')
 
     def _take_gizmo(self) -> None:
         if (pose := self._pose_of_gizmo) != self._placed:

@@ -67,7 +67,7 @@ def index_of_entries(directories: tuple[str, ...]) -> NameIndex:
     return NameIndex(entry for each in directories for entry in _entries(each))
 
 
-_NamesIn: TypeAlias = Callable[[tuple[str, ...]], NameIndex]
+NamesIn: TypeAlias = Callable[[tuple[str, ...]], NameIndex]
 
 
 class ResourceFinder(NamedTuple):
@@ -172,7 +172,7 @@ class ResourceFinder(NamedTuple):
 
     def reason_not_found(
         self, uri: str, including_file: str,
-        names_in: _NamesIn = index_of_entries,
+        names_in: NamesIn = index_of_entries,
     ) -> str:
         """
         Return the reason why :meth:`path_from_uri` finds no path for a URI, with a remedy.
@@ -341,7 +341,7 @@ def _directory_near(file: str, name: str) -> str:
     return ''
 
 
-def _hint_about_missing(name: str, directories: tuple[str, ...], names_in: _NamesIn) -> str:
+def _hint_about_missing(name: str, directories: tuple[str, ...], names_in: NamesIn) -> str:
     """Return the template of a missing file, or else the nearest name, as the end of a message."""
     hints = (hint_about_missing_file(f'{each}/{name}') for each in directories)
     return next(filter(None, hints), '') or names_in(directories).hint(name)

@@ -172,6 +172,7 @@ def test_quaternion_that_is_pasted_and_not_of_length_one_is_asked_about(written)
     edit._numbers[2].value = 'x: 0 y: 0 z: 45 w: 1'
     show(edit)
     assert 'the quaternion 0 0 45 1 has the length 45' in edit.html
+    assert [*edit.actions] == ['write anyway', 'cancel']
 
 
 def test_refused_text_goes_when_another_frame_is_selected(written):
