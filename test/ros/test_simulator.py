@@ -111,9 +111,15 @@ def test_a_call_without_an_answer_is_followed_by_a_second_one(
     (['a', 'b'], 2, 'few poses of models from {}: it has 2 entities, which are more than were'),
 ])
 def test_a_wrong_number_is_told(node, simulator, service, names, states, line, capfd):
-    requests = service(names, states)
-    spin_until(node, lambda: simulator._problem)
-    assert capfd.readouterr().err.count(line.format(SERVICE)) == 1
+    requests, log = service(names, states), []
+
+    def is_told():
+        # A service that is not discovered yet is told before.
+        log.append(capfd.readouterr().err)
+        return line.format(SERVICE) in log[-1]
+
+    spin_until(node, is_told)
+    assert log[-1].count(line.format(SERVICE)) == 1
     assert simulator.has_answers == (len(names) == states)
     if len(names) == states:
         assert simulator._due > time.monotonic() + 30.0
