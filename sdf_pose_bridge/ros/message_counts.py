@@ -60,6 +60,8 @@ class MessageCounts:
 
     def _contradicts(self, stamp_ns: int, values: NDArray[np.float64]) -> bool:
         with np.errstate(all='ignore'):  # values need not be finite
-            rest, step = (np.abs(values - each).max(initial=0.0) for _, each in self._last)
+            changes = [values - each for _, each in self._last]
+            # Squares of the distances.
+            rest, step = (np.vdot(each, each) for each in changes)
         return bool(
-            0 < stamp_ns < self._last[-1][0] or (step > _LEAST_STEP and rest < step / 4.0))
+            0 < stamp_ns < self._last[-1][0] or (step > _LEAST_STEP**2 and rest < step / 16.0))
