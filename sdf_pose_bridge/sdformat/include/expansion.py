@@ -129,7 +129,8 @@ class IncludeExpansion:
         place, uri = self._sources.place(include), value_at(include, 'uri')
         found = self._included_file(place, uri, files)
         if isinstance(found, str):
-            self._report_missing(self._sources.place(uri_xml), uri, found)
+            self._report_missing(place._replace(
+                line=self._sources.line(uri_xml), element=f'{place.element}/uri'), uri, found)
             return
         chosen, fault = found
         if fault is not None:
