@@ -15,7 +15,6 @@ LONGEST_S = 10.0
 """Time in s after which failures of all messages are those of the node; a failure is forgotten
 after the same time."""
 
-
 _Result = TypeVar('_Result')
 
 

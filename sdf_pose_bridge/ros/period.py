@@ -3,10 +3,10 @@
 """
 The period in which moved transforms wait, so that they are published at a highest rate.
 
-A message is published at once and begins a period, which is the same for all
-topics. Later ones wait in the subscriptions for its end. Then the newest of them are published in
-one message, and another period begins if there are any. The first message of a silent topic is
-published at once, unless all topics are silent, as when many robots start together.
+A message is published at once and begins a period, which is the same for all topics. Later ones
+wait in the subscriptions for its end. Then the newest of them are published in one message, and
+another period begins if there are any. The first message of a silent topic is published at once,
+unless all topics are silent, as when many robots start together.
 """
 
 from __future__ import annotations
