@@ -1,18 +1,62 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Errors and warnings about SDFormat files.
+Errors and warnings about SDFormat files, with codes of libsdformat (``sdf::ErrorCode``).
 
-All errors derive from :class:`SdfError`, with one class for each cause. The codes are from
-libsdformat (``sdf::ErrorCode``).
+All errors derive from one class, and each cause has its own::
+
+    SdfError
+      LoadError
+      FileReadError
+        TemporaryReadError
+      LimitError
+      ParsingError
+      ConversionError
+      AttributeInvalidError
+      AttributeMissingError
+      ElementInvalidError
+      ElementMissingError
+      ElementIncorrectTypeError
+      ReservedNameError
+      DuplicateNameError
+      ModelWithoutLinkError
+      CanonicalLinkError
+      RelativeToError
+      RelativeToCycleError
+      AttachedToError
+      AttachedToCycleError
+      LinkInertiaError
+      JointChildError
+      JointParentError
+      JointSameLinkError
+      ExpressedInError
+      MimicError
+      UriLookupError
+      PlacementFrameError
+      MergeIncludeError
+      PoseNotSetError
+      UrdfNotMadeError
+      FileWriteError
+      JointPositionError
+      UnknownFrameError
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+import re
 from typing import NamedTuple
 
-from sdf_pose_bridge.names import shortened_message
+from sdf_pose_bridge.names import shortened
+
+_LONGEST_MESSAGE = 2000
+_QUOTED = re.compile(r'"([^"]*)"')
+
+
+def shortened_message(message: str) -> str:
+    """Return at most 2000 characters of a message, with shorter values in double quotes."""
+    return _QUOTED.sub(
+        lambda match: f'"{shortened(match[1])}"', shortened(message, _LONGEST_MESSAGE))
 
 
 class Place(NamedTuple):
@@ -53,6 +97,12 @@ class SdfError(Exception):
     """
 
     code: str = 'ERROR'
+    file: str
+    """As :attr:`Place.file`."""
+    line: int
+    """As :attr:`Place.line`."""
+    element: str
+    """As :attr:`Place.element`."""
 
     def __init_subclass__(cls, code: str = '') -> None:
         if code:
@@ -63,23 +113,9 @@ class SdfError(Exception):
         super().__init__(message, place)
         self.message = message
         self.place = place
+        self.file, self.line, self.element = place
         self._errors: tuple[SdfError, ...] = ()
         self._warnings: tuple[SdfWarning, ...] = ()
-
-    @property
-    def file(self) -> str:
-        """Path of the file, as it was opened."""
-        return self.place.file
-
-    @property
-    def line(self) -> int:
-        """Line in that file, from 1; 0 where no line can be named."""
-        return self.place.line
-
-    @property
-    def element(self) -> str:
-        """Path of the element, such as ``/sdf/model[@name="m"]/link[@name="l"]``."""
-        return self.place.element
 
     @property
     def errors(self) -> tuple[SdfError, ...]:
@@ -118,7 +154,7 @@ class FileReadError(SdfError, code='FILE_READ'):
     """A file is missing, cannot be read, is not XML or declares no version."""
 
 
-class PassingReadError(FileReadError):
+class TemporaryReadError(FileReadError):
     """A file cannot be read for a temporary reason: no descriptors, no memory, a disk."""
 
 

@@ -32,8 +32,6 @@ JOINT_SUFFIX = '_joint'
 _LONGEST_VALUE = 80
 _LONGEST_PATH = 300
 _MOST_SHOWN = 5
-_LONGEST_MESSAGE = 2000
-_QUOTED = re.compile(r'"([^"]*)"')
 
 _COMMAND_OF_RUNNER = re.compile(r'#(?=#\[)|(?<!\S):(?=:)')
 """The first character of a command of GitHub's runner: ``##[...]``, or ``::`` at the beginning."""
@@ -99,12 +97,6 @@ def shortened(value: str, longest: int = _LONGEST_VALUE) -> str:
         return value
     half = (longest - 3) // 2
     return f'{value[:half]}...{value[-half:]}'
-
-
-def shortened_message(message: str) -> str:
-    """Return at most 2000 characters of a message, with shorter values in double quotes."""
-    return _QUOTED.sub(
-        lambda match: f'"{shortened(match[1])}"', shortened(message, _LONGEST_MESSAGE))
 
 
 def quoted_names(names: Sequence[str], most: int = _MOST_SHOWN) -> str:

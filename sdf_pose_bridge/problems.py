@@ -7,8 +7,14 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from typing import TypeVar
 
-from sdf_pose_bridge.errors import LoadError, Place, SdfError, SdfWarning
-from sdf_pose_bridge.names import listed, shortened_message
+from sdf_pose_bridge.errors import (
+    LoadError,
+    Place,
+    SdfError,
+    SdfWarning,
+    shortened_message,
+)
+from sdf_pose_bridge.names import listed
 
 MOST_PROBLEMS = 100
 """Largest number of errors, and of warnings, that a load keeps."""

@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Each name that users type or read has its place in the page of the documentation about it."""
 
+from importlib import import_module
 from pathlib import Path
 import re
 import xml.etree.ElementTree as ET
 
 import pytest
 
+import sdf_pose_bridge
 from sdf_pose_bridge.cli.main import new_parser
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.formats import POSE_FORMATS, ROTATION_FORMATS
@@ -90,6 +92,14 @@ def test_format_of_the_service(name):
 def test_kind(kind):
     text = (ROOT / 'docs/ros_interface.md').read_text(encoding='utf-8')
     assert kind.label in next(line for line in text.splitlines() if line.startswith('| `kinds`'))
+
+
+def test_the_page_of_the_api_lists_all_exported_names_and_modules_that_exist():
+    text = (ROOT / 'docs/python_api.md').read_text(encoding='utf-8')
+    listed = re.findall(r'auto(?:function|class|exception):: sdf_pose_bridge\.(\w+)$', text, re.M)
+    assert sorted(listed) == sorted(sdf_pose_bridge.__all__)
+    for module, members in re.findall(r'automodule:: (\S+)\n +:members: *(.*)', text):
+        assert all(hasattr(import_module(module), name) for name in re.findall(r'\w+', members))
 
 
 def test_parameter():

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TypeVar
 
-from sdf_pose_bridge.errors import FileReadError, LimitError, PassingReadError, Place
+from sdf_pose_bridge.errors import FileReadError, LimitError, TemporaryReadError, Place
 from sdf_pose_bridge.limited_process import Call, LimitedProcess, ProcessEndedError
 from sdf_pose_bridge.process_limits import FOR_FILES, LimitExceededError
 from sdf_pose_bridge.tf.loaded_scene import LoadedScene, LoadRequest
@@ -60,5 +60,5 @@ class SceneReader(LimitedProcess):
             msg = f'the file needs {error} to be read'
             raise LimitError(msg, place) from None
         except ProcessEndedError as error:
-            error_class = PassingReadError if error.is_temporary else FileReadError
+            error_class = TemporaryReadError if error.is_temporary else FileReadError
             raise error_class(str(error), place) from error

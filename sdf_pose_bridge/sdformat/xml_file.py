@@ -25,8 +25,14 @@ from lxml import etree
 import numpy as np
 from numpy.typing import NDArray
 
-from sdf_pose_bridge.errors import FileReadError, PassingReadError, Place, SdfWarning
-from sdf_pose_bridge.names import hint_from_names, shortened_message
+from sdf_pose_bridge.errors import (
+    FileReadError,
+    Place,
+    SdfWarning,
+    shortened_message,
+    TemporaryReadError,
+)
+from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.process_limits import raise_limits
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.templates import hint_about_template
@@ -114,7 +120,7 @@ def bytes_from_file(path: str, usage: Usage, *, allows_pipe: bool = False) -> by
 
     :param allows_pipe: whether it may be a pipe, as of the shell's ``<(command)``.
     :raises FileReadError: if it is missing, unreadable or not a regular file;
-        :class:`~sdf_pose_bridge.errors.PassingReadError` if reading it again may help.
+        :class:`~sdf_pose_bridge.errors.TemporaryReadError` if reading it again may help.
     :raises LimitError: if it is too large.
     """
     place = Place(path)
@@ -139,7 +145,7 @@ def bytes_from_file(path: str, usage: Usage, *, allows_pipe: bool = False) -> by
     except (OSError, ValueError) as error:  # ValueError: a path with a zero byte
         msg = f'the file cannot be read: {getattr(error, "strerror", None) or error}{_cure(path)}'
         is_passing = isinstance(error, OSError) and error.errno in _PASSING
-        raise (PassingReadError if is_passing else FileReadError)(msg, place) from error
+        raise (TemporaryReadError if is_passing else FileReadError)(msg, place) from error
 
 
 def _cure(path: str) -> str:

@@ -13,7 +13,7 @@ import enum
 from pathlib import Path
 from typing import NamedTuple
 
-from sdf_pose_bridge.errors import PassingReadError, SdfError, SdfWarning
+from sdf_pose_bridge.errors import TemporaryReadError, SdfError, SdfWarning
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.limits import MissingInclude
 from sdf_pose_bridge.tf.joint_positions import JointPositions, UnreportedJoints
@@ -90,4 +90,4 @@ def fingerprint_of_scene(scene: Scene) -> bytes:
 def is_temporary(error: Exception) -> bool:
     """Return whether reading the same files again may succeed after an error of a load."""
     return isinstance(error, SdfError) and any(
-        isinstance(each, PassingReadError) for each in error.errors)
+        isinstance(each, TemporaryReadError) for each in error.errors)

@@ -4,14 +4,14 @@
 
 import pytest
 
-from sdf_pose_bridge.errors import PassingReadError, Place, SdfError
+from sdf_pose_bridge.errors import TemporaryReadError, Place, SdfError
 from sdf_pose_bridge.ros import file_follower
 from sdf_pose_bridge.ros.file_follower import FileFollower
 from sdf_pose_bridge.tf.loaded_scene import LoadRequest
 from sdf_pose_bridge.tf.loading import files_behind_error, loaded_scene_from_request
 
 GOOD = '<sdf version="1.10"><model name="m"><link name="l"/></model></sdf>'
-BUSY, BROKEN = PassingReadError('busy', Place('a.sdf')), SdfError('broken', Place('a.sdf'))
+BUSY, BROKEN = TemporaryReadError('busy', Place('a.sdf')), SdfError('broken', Place('a.sdf'))
 HALF, LONGER_HALF = GOOD[:40], '\n' + GOOD[:50]
 
 

@@ -12,7 +12,7 @@ from sdf_pose_bridge.errors import (
     AddressError,
     FileReadError,
     LimitError,
-    PassingReadError,
+    TemporaryReadError,
     SdfError,
 )
 from sdf_pose_bridge.geometry.poses import Pose
@@ -97,7 +97,7 @@ def test_a_file_that_needs_too_much_is_an_error(reader, request_of_file):
 
 
 def test_a_process_that_is_killed_is_an_error_that_passes(reader, request_of_file):
-    with pytest.raises(PassingReadError, match='has ended by signal 9') as caught:
+    with pytest.raises(TemporaryReadError, match='has ended by signal 9') as caught:
         result(reader, request_of_file, signal.raise_signal, signal.SIGKILL)
     assert is_temporary(caught.value)
     assert load(reader, request_of_file)
