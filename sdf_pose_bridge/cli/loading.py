@@ -156,7 +156,7 @@ def print_frames(
 
 
 def pose_lookup(scene: Scene) -> PoseLookup:
-    """Return a lookup by the names of SDF and of TF, as far as the names of TF are unique."""
+    """Return a lookup by the names of SDF, and by those of TF if these are unique."""
     try:
         tree = tf_tree_from_scene(scene)
     except SdfError:

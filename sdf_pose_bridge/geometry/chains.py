@@ -53,7 +53,7 @@ def poses_along_chains(
     """
     Multiply poses along chains of references.
 
-    :param edges: the pose of each element in the one that it is relative to.
+    :param edges: the pose of each element in its reference.
     :param references: the element that each is relative to; -1 at the end of a chain.
     :param indices: the elements to resolve. All references of these are among them.
     :return: a copy of the poses; these elements' are in the frames at the ends of their

@@ -256,7 +256,7 @@ def quaternion_from_rotation_vector(xp: Any, *vector: Component) -> Any:
     check(xp, square < LARGEST_SQUARE)
     is_usual = square > SMALLEST_SQUARE
     angle = xp.where(is_usual, xp.sqrt(square), 1.0)
-    # Of a tiny angle, the sine of its half is its half.
+    # The sine of half a tiny angle is this half.
     factor = xp.where(is_usual, xp.sin(0.5 * angle) / angle, 0.5)
     cosine = xp.where(is_usual, xp.cos(0.5 * angle), 1.0)
     return corrected(xp, (*(component * factor for component in vector), cosine))

@@ -26,7 +26,7 @@ from sdf_pose_bridge.geometry.rotations import (
 
 class AngleSequence(NamedTuple):
     """
-    A sequence of rotations, by the sequence z-y'-x'' of another rotation.
+    A sequence, expressed by yaw, pitch and roll of a related rotation.
 
     The quaternion of that rotation is the product of the quaternion and a matrix. Its yaw is the
     first angle, its roll the last one, and its pitch the middle one but for a sign and an offset.
@@ -94,4 +94,4 @@ XYZ = AngleSequence("x-y'-z''", np.eye(4)[[2, 1, 0, 3]] * [1.0, -1.0, 1.0, 1.0],
 ZYZ = AngleSequence("z-y'-z''", math.sqrt(0.5) * np.array([
     [1.0, 0.0, -1.0, 0.0], [0.0, 1.0, 0.0, 1.0], [1.0, 0.0, 1.0, 0.0], [0.0, -1.0, 0.0, 1.0],
 ]), offset=0.5)
-"""Of the rotation before which the body turns about y by a right angle; its x axis is then z."""
+"""The body first turns about y by a right angle, so that its x axis is z."""

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TypeVar
 
-from sdf_pose_bridge.errors import FileReadError, LimitError, TemporaryReadError, Place
+from sdf_pose_bridge.errors import FileReadError, LimitError, Place, TemporaryReadError
 from sdf_pose_bridge.limited_process import Call, LimitedProcess, ProcessEndedError
 from sdf_pose_bridge.process_limits import FOR_FILES, LimitExceededError
 from sdf_pose_bridge.tf.loaded_scene import LoadedScene, LoadRequest
@@ -19,7 +19,7 @@ _Result = TypeVar('_Result')
 def _prepare() -> None:
     """Import what reads files, while the node itself imports ROS."""
     import sdf_pose_bridge.sdformat.include.expansion
-    import sdf_pose_bridge.tf.loading  # noqa: F401
+    import sdf_pose_bridge.tf.frame_change  # noqa: F401
 
 
 def loaded_scene(request: LoadRequest) -> LoadedScene:

@@ -270,7 +270,7 @@ class _Builder:
         for uri in sorted(set(self._unresolved.values()) - {''}):
             indices = sorted(index for index, cause in self._unresolved.items() if cause == uri)
             names = [self._scopes.names[index] for index in indices]
-            msg = (f'because "{uri}" is missing, what refers to it is left out too: '
+            msg = (f'"{uri}" is missing, so elements that refer to it are left out too: '
                    f'{quoted_names(names)}')
             self._problems.warning(msg, self._elements.place(indices[0]))
 

@@ -146,7 +146,7 @@ def _scene(
 
 
 def _model_by_itself(root: XmlElement, sources: Sources) -> ModelByItself | None:
-    """Check a model file by itself; return what a merge needs, or None if there are errors."""
+    """Check a model file by itself; return facts for a merge, or None if there are errors."""
     part = sources.with_own_problems()
     elements = elements_from_tree(root, part)
     graph = frame_graph_from_elements(elements, part.problems)

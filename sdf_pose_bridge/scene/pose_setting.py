@@ -143,8 +143,8 @@ def _change_of_own_pose(
         if are_close(current, asked):
             return PoseChange(change, at.line, new)
         tolerance /= 10.0
-    msg = (f'no pose of "{scene.names[element]}" in the file puts it there: the frame that the '
-           'pose is measured in moves with it, or parameters of an include decide where it is')
+    msg = (f'no <pose> puts "{scene.names[element]}" there: the frame in which it was measured '
+           'moves with it, so choose another one; or parameters of an include place it')
     raise PoseNotSetError(msg, at)
 
 
@@ -219,7 +219,7 @@ def _error_with_origin(
         words = [shortest_decimal(number, _ORIGIN_ERROR) for number in (
             *pose[:3], *rpy_from_quaternion(pose[3:]))]
         origin = etree.Element('origin', xyz=' '.join(words[:3]), rpy=' '.join(words[3:]))
-        # Of two, the first one counts.
+        # The first ``<origin>`` is read.
         joint.xml.insert(0, origin)
         new = load({path: etree.tostring(file.root)})
         joint.xml.remove(origin)

@@ -118,7 +118,7 @@ class JointMotion:
     Joints that close a loop move nothing, and nothing moves a link of a static model.
 
     :param frame_names: the part of a scoped name that the name of a joint contains.
-    :param others: names of bodies without parts that are not in the scene, and move freely, too.
+    :param others: names of further free bodies, which are not in the scene and have no parts.
     """
 
     def __init__(
@@ -138,7 +138,7 @@ class JointMotion:
         self.joint_names = dict(zip(joints.tolist(), names, strict=True))
         """The name of each joint, also of a fixed one, by its element."""
         self.dofs = tuple(dofs)
-        """The degrees of freedom of joints; the ones of a joint are adjacent, in order from the
+        """The degrees of freedom of joints; those of one joint are adjacent, in order from the
         root. The axis is reversed if the moved body is the parent of the joint."""
         models = list(tf_parents.free_models.values())
         names = FrameNaming(frame_names).frame_ids_from_scene(scene, np.array(models, np.int32))
@@ -154,7 +154,7 @@ class JointMotion:
         canonical link of the model; 0 for another body."""
         indices = np.arange(len(bodies), dtype=np.int32)
         last_of_elements = np.full(len(scene.kinds), NO_DOF, np.int32)
-        # Of several degrees of freedom of a joint, the last one stays.
+        # The last degree of freedom of a joint replaces the others.
         last_of_elements[bodies] = indices
         last_of_elements = last_of_elements[
             ends_from_pointers(np.where(last_of_elements != NO_DOF, -1, tf_parents.parents))]
@@ -247,7 +247,7 @@ class MovingFrames:
     :param parents: index of the parent of each frame, or :data:`ROOT_IS_PARENT`, or
         :data:`NO_PARENT`.
     :param elements: the element that each frame moves with.
-    :param pose_frame: index of the frame that :meth:`poses` are given in; -1 for the root frame.
+    :param pose_frame: index of the pose frame, which :meth:`poses` are in; -1 for the root frame.
     """
 
     def __init__(
@@ -266,7 +266,7 @@ class MovingFrames:
         """The last degree of freedom between the root and each of :attr:`indices`."""
         self.last_dof_of_pose_frame = NO_DOF if pose_frame < 0 else int(last[pose_frame])
         self.posed_indices = np.flatnonzero(last != self.last_dof_of_pose_frame)
-        """The frames that move in the frame that poses are given in."""
+        """The moving frames, in the pose frame."""
         self.posed_last_dofs = last[self.posed_indices]
         """The last degree of freedom before each of :attr:`posed_indices`; -1 for none."""
         self._poses, self._pose_frame = poses, pose_frame
@@ -308,7 +308,7 @@ class MovingFrames:
 
     def poses(self, values: Floats) -> PoseArray:
         """
-        Return the poses of the frames that move in the frame that poses are given in.
+        Return the poses of the moving frames in the pose frame.
 
         :return: shape (k, 7), pose of each of :attr:`posed_indices` in that frame; unit
             quaternions with w >= 0.

@@ -120,8 +120,8 @@ class JointPositions:
             each.axis.lower == each.axis.upper and abs(each.axis.lower) <= LARGEST_POSITION
             for each in dofs]
         self.values = motion.initial_coordinates.copy()
-        """The coordinates. A change is another array, so that another thread has all values of one
-        time."""
+        """The coordinates. The array is replaced, never changed in place, so another thread has
+        all values of one time."""
         fixed = np.flatnonzero(self._is_fixed)
         self.values[fixed] = [dofs[dof].axis.lower for dof in fixed]
         self._motion = motion

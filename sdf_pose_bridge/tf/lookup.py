@@ -158,7 +158,7 @@ class PoseLookup:
             end, start = motion.last_dofs[owners]
             unknown, other = motion.last_chosen(~joints.is_known)[[start, end]].tolist()
             if unknown != other:
-                # One that both depend on moves neither in the other.
+                # A joint above both changes nothing between them.
                 is_unknown = np.arange(len(joints.names)) == unknown
                 dof = other if motion.last_chosen(is_unknown)[end] == unknown else unknown
                 what = 'the pose of model' if joints.is_model(dof) else 'joint'

@@ -167,7 +167,7 @@ def _parents_of_free_bodies(scene: Scene, representatives: Indices) -> Indices:
     canonical_links = scene.canonical_links
     scopes = ends_from_pointers(
         np.where((scene.parents < 0) | (canonical_links >= 0), -1, scene.parents))
-    # Of the models that have the same canonical link, the outermost one comes first in the file.
+    # The outermost model of those with one canonical link comes first in the file.
     outermost = np.arange(len(canonical_links), dtype=np.int32)
     models = np.flatnonzero(canonical_links >= 0)[::-1]
     outermost[canonical_links[models]] = models

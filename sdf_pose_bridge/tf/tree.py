@@ -277,7 +277,7 @@ def elements_in_model(scene: Scene, name: str) -> NDArray[np.bool_]:
     if name not in names:
         msg = f'there is no model "{name}" to publish{hint_from_names(name, names)}'
         raise UnknownFrameError(msg, Place(scene.path))
-    # Of several models of that name, the first one counts.
+    # The first model of that name counts.
     return scene.are_in([models[names.index(name)]])
 
 

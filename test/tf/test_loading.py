@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a load leaves in memory, paths that fail, texts in any encoding, and measured poses."""
+"""What a load leaves in memory, paths that fail, and texts in any encoding."""
 
 import gc
 
@@ -13,22 +13,12 @@ from sdf_pose_bridge import load_text
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.tf.frame_ids import FrameNaming
-from sdf_pose_bridge.tf.loaded_scene import DescriptionFormat, fingerprint_of_scene, LoadRequest
-from sdf_pose_bridge.tf.loading import (
-    loaded_scene_from_request,
-    unicode_text,
-    write_frame_change,
-)
+from sdf_pose_bridge.tf.loaded_scene import DescriptionFormat, LoadRequest
+from sdf_pose_bridge.tf.loading import loaded_scene_from_request, unicode_text
 from sdf_pose_bridge.tf.tree import TfOptions
 
 GOOD = '<model name="m"><link name="l"><pose>1 0 0 0 0 0</pose></link><frame name="f"/></model>'
 BAD = GOOD.replace('<pose>', '<pose relative_to="x">')
-
-ARM = model_file(
-    '<link name="base"/>' + posed('link', 'tool', '1 0 0 0 0 0')
-    + posed('frame', 'mark', '2 0 0 0 0 0') + posed('frame', 'on_mark', '0 0 1 0 0 0', 'mark')
-    + joint('<pose relative_to="base"/><parent>base</parent><child>tool</child>'
-            '<axis><xyz>0 0 1</xyz></axis>', 'turn', 'revolute'))
 
 TEXT = '<robot name="größe"/>'
 
@@ -137,33 +127,3 @@ def test_warning_about_a_loop_is_given_once():
     _, warnings = described(model_file(
         '<link name="a"/><link name="b"/>' + joint(ends, 'j') + joint(ends, 'k')))
     assert len(warnings) == 1
-
-
-@pytest.fixture(name='change')
-def make_change(tmp_path):
-    """Finds a change of the arm; ``change(frame, pose, reference, *positions)``."""
-    path = tmp_path / 'arm.sdf'
-    path.write_text(ARM, encoding='utf-8')
-    request = LoadRequest(str(path), '', tf_options=TfOptions(use_joint_states=True))
-    loaded = loaded_scene_from_request(request)
-    fingerprint = fingerprint_of_scene(loaded.scene)
-
-    def change(frame, pose, reference='', position=0.0, published=fingerprint):
-        positions = loaded.joint_positions
-        positions.update(positions.selection(['turn']), np.array([position]))
-        write_frame_change(
-            request, published, frame, pose, reference, positions, dry_run=False)
-        return path.read_text(encoding='utf-8')
-
-    return change
-
-
-def test_a_pose_is_taken_where_its_reference_has_moved_to(change):
-    text = change('mark', Pose(0.5), 'tool', np.pi / 2)
-    np.testing.assert_allclose(
-        load_text(text).pose('m::mark')[:3], (0.0, 1.5, 0.0), atol=1e-9)
-
-
-def test_a_file_that_is_not_what_is_published(change):
-    with pytest.raises(SdfError, match='the file has changed since it was read'):
-        change('mark', Pose(), published=b'other')

@@ -37,7 +37,7 @@ def escaped(text: str) -> str:
 
 
 def html_of_data(name: str, value: str) -> str:
-    """Return an element that is not seen, from which the script has a value."""
+    """Return a hidden element that passes a value to the script."""
     return f'<meta data-{name}="{html.escape(value)}">'
 
 

@@ -58,7 +58,7 @@ class _Joint:
         self._shown = self._slider.value, self._field.value
 
     def refresh(self) -> str:
-        """Take what was typed, or where the slider was moved; return why a text is rejected."""
+        """Read the field and the slider; return the reason why the text is rejected."""
         slider, limits, text = self._slider, self._limits, self._field.value
         if text != self._shown[1]:
             self._shown = self._shown[0], text
@@ -90,7 +90,7 @@ class JointSliders:
     ) -> None:
         self.ranges, self.units = ranges, units
         self.moves: Iterator[None] = iter(())
-        """Moves each joint through its range, as far as it is iterated over."""
+        """Iterating over it moves each joint through its range."""
         self.folder = gui.add_folder('Joints', order=order, visible=bool(ranges))
         with self.folder:
             buttons = gui.add_button_group(
@@ -110,7 +110,7 @@ class JointSliders:
         return {name: joint.position for name, joint in self._joints.items()}
 
     def refresh(self) -> str:
-        """Take what was typed or moved; return in HTML why texts are rejected."""
+        """Read all fields and sliders; return in HTML the reasons why texts are rejected."""
         reasons = [joint.refresh() for joint in self._joints.values()]
         return html_of_lines('errors', filter(None, reasons))
 

@@ -122,8 +122,8 @@ class Page:
         self._events, self._hidden, gui = Events(wake), {*HIDDEN_AT_FIRST}, client.gui
         self._dock_panel()
         self._reasons = gui.add_html('')
-        # The script reads these in a panel that is not seen and never folded, as a folded one has
-        # no content.
+        # The script reads these in a hidden panel that is never folded, as a folded panel has no
+        # content.
         data = gui.add_panel()
         data.float()
         with data.add_tab('data'):
@@ -228,7 +228,7 @@ class Page:
             panel.minimize()
 
     def _answer(self, ask: str) -> None:
-        """Do what was clicked outside of the controls."""
+        """Process a click outside of the controls."""
         verb, _, frame = ask.partition(' ')
         if verb in {'select', 'fold', 'hide'}:
             self._selected.answer(verb, int(frame))

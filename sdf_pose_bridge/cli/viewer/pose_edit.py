@@ -63,12 +63,12 @@ class PoseEdit:
             self._numbers = [gui.add_text(label, '', disabled=True) for label in POSE_LABELS]
         for control in (self._gizmo, *self._numbers):
             # What was typed counts before a click that follows.
-            events.when(control.on_update, self._take_numbers)
+            events.when(control.on_update, self._read_numbers)
         self._texts, self._shown_for = [''] * 6, (Pose(), Pose(), Units())
 
     def refresh(self, shown: ShownScene, frame: int, reference: int, units: Units) -> None:
         """
-        Edit a frame; take what was typed or dragged.
+        Edit a frame; read the fields and the gizmo.
 
         The new pose stays if the frame is the same and has not moved, even if the file has changed
         elsewhere.
@@ -85,10 +85,10 @@ class PoseEdit:
             self._change = None
         if target != before:
             self._overwritten = None
-            self._take(None)
+            self._set_pose(None)
         elif self._change is not None:
-            self._take_numbers()
-            self._take_gizmo()
+            self._read_numbers()
+            self._read_gizmo()
         text = f'{escaped(target[0])} in <b>{escaped(shown.ids[reference])}</b>'
         self._frame_of_numbers.content = '<div class="frame-of-numbers">{}</div>'.format(
             text if frame >= 0 else 'select a frame to move it')
@@ -132,7 +132,7 @@ class PoseEdit:
         if self.pose is not None and not self._refusal:
             actions['write anyway' if self._question else 'write to file'] = self._write_pose
         if self.pose is not None or self._refusal:
-            actions['cancel'] = partial(self._take, None)
+            actions['cancel'] = partial(self._set_pose, None)
         if self._undone is not None:
             actions['undo the last write'] = partial(self._write, self._undone, None)
         return actions
@@ -156,7 +156,7 @@ class PoseEdit:
             'errors', filter(None, (*self._notes, self._question, self._refusal)))
         return f'{text}{notes}{errors}{"".join(buttons)}'
 
-    def _take(self, pose: Pose | None, *notes: str, question: str = '') -> None:
+    def _set_pose(self, pose: Pose | None, *notes: str, question: str = '') -> None:
         self.pose, self._notes, self._question = pose, notes, question
         if pose is None:
             self._errors, self._refusal = [], ''
@@ -164,7 +164,7 @@ class PoseEdit:
             for number, text in zip(self._numbers, self._texts, strict=True):
                 number.value = text
 
-    def _take_numbers(self) -> None:
+    def _read_numbers(self) -> None:
         typed, self._refusal = [number.value for number in self._numbers], ''
         if typed == self._texts:
             return
@@ -190,13 +190,13 @@ class PoseEdit:
         if not pasted:
             self._shown_for = reference, pose, units
         doubt = given.format.doubt(given.numbers, is_written=True)
-        self._take(pose, *given.notes, question=doubt.question() if doubt else '')
+        self._set_pose(pose, *given.notes, question=doubt.question() if doubt else '')
 
-    def _take_gizmo(self) -> None:
+    def _read_gizmo(self) -> None:
         if (pose := self._pose_of_gizmo) != self._placed:
             # The gizmo is not placed again: under the pointer it may be elsewhere by now.
             self._placed = pose
-            self._take(pose)
+            self._set_pose(pose)
 
     @property
     def _pose_of_gizmo(self) -> Pose:
@@ -237,5 +237,5 @@ class PoseEdit:
         shown = self._shown.at(self._shown.positions, change.scene)
         self._undone, self._overwritten = undone, self._target[1] if undone else None
         self._target = self._target[0], shown.pose_of(self._frame)
-        self._take(None)
+        self._set_pose(None)
         self._show_file(shown)

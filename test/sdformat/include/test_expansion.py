@@ -250,7 +250,7 @@ def test_missing_include_is_skipped_with_what_refers_to_it(write):
         on_missing_include='skip')
     assert scene.names == ('world', 'k', 'k::l')
     assert [warning.code for warning in scene.warnings] == ['WARNING', 'WARNING']
-    assert 'what refers to it is left out too: "f", "g"' in (
+    assert 'elements that refer to it are left out too: "f", "g"' in (
         scene.warnings[1].message)
 
 
@@ -266,7 +266,7 @@ def test_joint_that_refers_to_a_missing_include_is_left_out(write, name, parent,
               f'<parent>{parent}</parent><child>b</child><axis>{axis}</axis></joint></model>'),
         on_missing_include='skip')
     assert scene.joints == ()
-    assert 'what refers to it is left out too: "m::f", "m::j"' in scene.warnings[-1].message
+    assert 'refer to it are left out too: "m::f", "m::j"' in scene.warnings[-1].message
 
 
 @pytest.mark.parametrize('frame', ['near', 'robot::l'])
