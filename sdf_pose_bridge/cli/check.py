@@ -11,13 +11,9 @@ from functools import cache
 import re
 import sys
 
-from sdf_pose_bridge.cli.loading import add_file_arguments, load_file
-from sdf_pose_bridge.cli.printing import (
-    add_format_argument,
-    in_order,
-    print_json,
-    print_problems,
-)
+from sdf_pose_bridge.cli.arguments import add_file_arguments, add_format_argument
+from sdf_pose_bridge.cli.loading import load_file
+from sdf_pose_bridge.cli.printing import in_order, print_json, print_problems
 from sdf_pose_bridge.errors import Place, SdfError, SdfWarning
 from sdf_pose_bridge.names import printable, shortened
 from sdf_pose_bridge.problems import Problems
@@ -31,18 +27,18 @@ _END_OF_FOLDER = re.compile('(?<=[^/:])/')
 _ESCAPES = str.maketrans({'%': '%25', '\r': '%0D', '\n': '%0A'})
 _ESCAPES_OF_PROPERTIES = {**_ESCAPES, **str.maketrans({':': '%3A', ',': '%2C'})}
 
+HELP = 'print the errors and warnings of files'
+DESCRIPTION = (
+    'Print every error and warning of files, one per line: FILE:LINE: CODE: '
+    'MESSAGE. The exit code is 1 if a file has an error.')
 
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command."""
-    parser = subparsers.add_parser(
-        'check', help='print the errors and warnings of files',
-        description='Print every error and warning of files, one per line: FILE:LINE: CODE: '
-                    'MESSAGE. The exit code is 1 if a file has an error.')
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
     add_file_arguments(parser)
     add_format_argument(parser, 'json', 'github')
     parser.add_argument(
         '--strict', action='store_true', help='the exit code is 1 for a warning too')
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:

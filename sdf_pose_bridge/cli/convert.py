@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from sdf_pose_bridge.cli.arguments import argument_type
 from sdf_pose_bridge.cli.given_poses import (
     add_given_unit_arguments,
     format_of_argument,
@@ -22,7 +23,7 @@ from sdf_pose_bridge.cli.given_poses import (
     PoseReader,
     poses_from_rows,
 )
-from sdf_pose_bridge.cli.printing import argument_type, CommandError, print_message
+from sdf_pose_bridge.cli.printing import CommandError, print_message
 from sdf_pose_bridge.geometry.formats import (
     converted_poses,
     converted_rotations,
@@ -51,23 +52,20 @@ _DIGITS_ON_TERMINAL = 12
 _NAMES = {*TEXT_FORMATS, *(
     name for each in FORMATS.values() for name in (each.name, *each.synonyms))}
 
+HELP = 'convert a pose or a rotation between formats'
+DESCRIPTION = (
+    'Convert poses or rotations between formats. Numbers may have commas and\n'
+    'brackets, and what programs print is read too: see docs/pose_formats.md.\n'
+    'Without numbers, poses are read from standard input; blank lines and those\n'
+    'that begin with # are skipped. Without --to, every format is printed.\n'
+    '--degrees, --radians, --mm and --metres say which units the given numbers\n'
+    'have; those printed have the units of their format.')
 
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command."""
-    parser = subparsers.add_parser(
-        'convert',
-        help='convert a pose or a rotation between formats',
-        description=(
-            'Convert poses or rotations between formats. Numbers may have commas and\n'
-            'brackets, and what programs print is read too: see docs/pose_formats.md.\n'
-            'Without numbers, poses are read from standard input; blank lines and those\n'
-            'that begin with # are skipped. Without --to, every format is printed.\n'
-            '--degrees, --radians, --mm and --metres say which units the given numbers\n'
-            'have; those printed have the units of their format.'
-        ),
-        epilog=formats_help(),
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.epilog = formats_help()
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.add_argument(
         '--from', dest='source', metavar='FORMAT',
         help='format of the numbers; not needed for a text that names it')
@@ -77,7 +75,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add_given_unit_arguments(parser)
     parser.add_argument(
         '--digits', metavar='N', type=argument_type(
-            int, lambda count: 0 <= count <= 15, 'must be a number from 0 to 15'),
+            int, 'must be a number from 0 to 15', lambda count: 0 <= count <= 15),
         help='round printed numbers to N digits behind the point; by default to '
         f'{_DIGITS_ON_TERMINAL} on a terminal, else all digits are printed')
     parser.add_argument(
@@ -92,7 +90,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         parser.add_argument(
             option, dest='named', nargs=1, action=_Collect, default=(), help=argparse.SUPPRESS)
     parser.add_argument('numbers', nargs='*', metavar='NUMBER', help='one pose or rotation')
-    parser.set_defaults(run=run)
 
 
 class _Collect(argparse.Action):

@@ -8,50 +8,42 @@ import argparse
 import math
 import sys
 
-from sdf_pose_bridge.cli.loading import (
+from sdf_pose_bridge.cli.arguments import (
+    add_format_argument,
     add_kinds_argument,
     add_loading_arguments,
-    load_file,
-    sdf_name,
-)
-from sdf_pose_bridge.cli.printing import (
-    add_format_argument,
+    add_reference_argument,
     add_unit_arguments,
     argument_type,
-    print_csv,
-    print_json,
-    print_problems,
-    print_table,
-    TableRow,
 )
+from sdf_pose_bridge.cli.frames import print_csv, print_table, TableRow
+from sdf_pose_bridge.cli.loading import load_file, sdf_name
+from sdf_pose_bridge.cli.printing import print_json, print_problems
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.units import Units
 from sdf_pose_bridge.scene.comparison import Change, Difference, differences_of_scenes, TOLERANCE
 
+HELP = 'print the differences between the frames of two files'
+DESCRIPTION = (
+    'Compare two files: print the elements that were added, removed, renamed or '
+    'moved, one per line, with the distance and the angle. The exit code is 1 if '
+    'there is a difference, 2 if a file has an error.')
 
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command."""
-    parser = subparsers.add_parser(
-        'diff', help='print the differences between the frames of two files',
-        description='Compare two files: print the elements that were added, removed, renamed or '
-                    'moved, one per line, with the distance and the angle. The exit code is 1 if '
-                    'there is a difference, 2 if a file has an error.')
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
     parser.add_argument('old', metavar='OLD', help='an SDFormat file; - reads the standard input')
     parser.add_argument('new', metavar='NEW', help='the file to compare it with')
     add_loading_arguments(parser)
     add_format_argument(parser, 'csv', 'json')
-    parser.add_argument(
-        '--relative-to', metavar='FRAME', default='',
-        help='compare poses relative to this frame, by its name in SDF (robot::hand) or TF '
-             '(robot/hand)')
+    add_reference_argument(parser, 'compare')
     parser.add_argument(
         '--tolerance', metavar='T', default=TOLERANCE, type=argument_type(
-            float, lambda tolerance: 0.0 <= tolerance < math.inf, 'is not a distance'),
+            float, 'is not a distance', lambda tolerance: 0.0 <= tolerance < math.inf),
         help='the largest distance in metres, and angle in radians, of a frame that has not '
              f'moved; by default {TOLERANCE:g}')
     add_kinds_argument(parser, 'compare only')
     add_unit_arguments(parser)
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:

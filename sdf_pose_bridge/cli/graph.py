@@ -20,13 +20,14 @@ import subprocess
 import numpy as np
 from numpy.typing import NDArray
 
-from sdf_pose_bridge.cli.loading import (
+from sdf_pose_bridge.cli.arguments import (
     add_file_arguments,
     add_kinds_argument,
     add_model_argument,
-    scene_of,
+    add_output_argument,
 )
-from sdf_pose_bridge.cli.printing import add_output_argument, CommandError, write_text
+from sdf_pose_bridge.cli.loading import scene_of
+from sdf_pose_bridge.cli.printing import CommandError, write_text
 from sdf_pose_bridge.names import printable, shortened
 from sdf_pose_bridge.process_limits import lift_limits
 from sdf_pose_bridge.scene.scene import Scene
@@ -55,21 +56,21 @@ _STYLES = {
 _OTHER_STYLE = 'shape=box fillcolor=whitesmoke'
 _DEFAULT, _RELATIVE_TO, _ATTACHED_TO, _JOINT = 'gray70', 'royalblue', 'forestgreen', 'black'
 
+HELP = 'draw references of poses, attachments and joints'
+DESCRIPTION = (
+    'Draw the frames of a file: the frame that each pose is relative to, '
+    'attachments, and joints with their types. Without -o the graph is printed in '
+    'the language DOT. Drawing needs the program dot of Graphviz, which takes '
+    'long for thousands of frames: --model draws one model.')
 
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command."""
-    parser = subparsers.add_parser(
-        'graph', help='draw references of poses, attachments and joints',
-        description='Draw the frames of a file: the frame that each pose is relative to, '
-                    'attachments, and joints with their types. Without -o the graph is printed in '
-                    'the language DOT. Drawing needs the program dot of Graphviz, which takes '
-                    'long for thousands of frames: --model draws one model.')
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
     add_file_arguments(parser, takes_many=False)
     add_output_argument(
         parser, _FORMATS, f'the graph; the ending says the format: {", ".join(_FORMATS)}')
     add_kinds_argument(parser, 'draw', _KINDS)
     add_model_argument(parser)
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:

@@ -138,7 +138,11 @@ def new_parser() -> argparse.ArgumentParser:
     parser.add_argument('--version', action='store_true', help='show the version and exit')
     subparsers = parser.add_subparsers(dest='command', metavar='COMMAND', title='commands')
     for command in (check, poses, tree, graph, view, urdf, convert, diff, set_command):
-        command.add_parser(subparsers)
+        name = command.__name__.rpartition('.')[2]
+        subparser = subparsers.add_parser(
+            name, help=command.HELP, description=command.DESCRIPTION)
+        command.add_arguments(subparser)
+        subparser.set_defaults(run=command.run)
     if '_ARGCOMPLETE' in os.environ:
         # The shell completes a command line. As for ros2, this needs argcomplete.
         with contextlib.suppress(ImportError):

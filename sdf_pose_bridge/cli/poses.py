@@ -8,49 +8,45 @@ import argparse
 
 import numpy as np
 
-from sdf_pose_bridge.cli.loading import (
+from sdf_pose_bridge.cli.arguments import (
     add_file_arguments,
-    add_kinds_argument,
-    print_frames,
-    sdf_name,
-)
-from sdf_pose_bridge.cli.printing import (
     add_format_argument,
+    add_kinds_argument,
+    add_reference_argument,
     add_unit_arguments,
-    Frame,
-    TableRow,
+    argument_type,
 )
+from sdf_pose_bridge.cli.frames import Frame, print_frames, TableRow
+from sdf_pose_bridge.cli.loading import sdf_name
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.joint_positions import scene_at_positions
 
+HELP = 'print the poses of files'
+DESCRIPTION = (
+    'Print the pose of every element of files, x y z roll pitch yaw, in the world '
+    'or in the implicit root of a model file; --format csv and json have all '
+    'digits and quaternions. The exit code is 1 if a file has an error.')
 
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command."""
-    parser = subparsers.add_parser(
-        'poses', help='print the poses of files',
-        description='Print the pose of every element of files, x y z roll pitch yaw, in the world '
-                    'or in the implicit root of a model file; --format csv and json have all '
-                    'digits and quaternions. The exit code is 1 if a file has an error.')
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
     add_file_arguments(parser)
     add_format_argument(parser, 'csv', 'json')
     parser.add_argument(
         '--json', dest='format', action='store_const', const='json',
         help='the same as --format json')
+    add_reference_argument(parser, 'print')
     parser.add_argument(
-        '--relative-to', metavar='FRAME', default='',
-        help='print poses relative to this frame, by its name in SDF (robot::hand) or TF '
-             '(robot/hand)')
-    parser.add_argument(
-        '--joint', metavar='NAME=VALUE', type=_position_from_text, action='append', default=[],
-        dest='positions',
+        '--joint', metavar='NAME=VALUE', action='append', default=[], dest='positions',
+        type=argument_type(
+            _position_from_text, 'is not NAME=VALUE with a number, such as elbow=1.57'),
         help='position of a joint, in radians or metres; all others stay at zero. May be '
              'repeated. Names are as in joint_states: elbow, arm/elbow, wrist_axis2, ball_roll')
     add_kinds_argument(parser, 'print only')
     add_unit_arguments(parser)
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -61,11 +57,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _position_from_text(text: str) -> tuple[str, float]:
     name, _, value = text.rpartition('=')
-    try:
-        return name, float(value)
-    except ValueError:
-        msg = f'"{text}" is not NAME=VALUE with a number, such as elbow=1.57'
-        raise argparse.ArgumentTypeError(msg) from None
+    return name, float(value)
 
 
 def _elements(

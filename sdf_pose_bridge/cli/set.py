@@ -8,19 +8,14 @@ import argparse
 from functools import partial
 import sys
 
+from sdf_pose_bridge.cli.arguments import add_file_arguments
 from sdf_pose_bridge.cli.given_poses import (
     add_given_unit_arguments,
     formats_help,
     PoseReader,
     poses_from_rows,
 )
-from sdf_pose_bridge.cli.loading import (
-    add_file_arguments,
-    pose_lookup,
-    scene_from_file,
-    scene_of,
-    STANDARD_INPUT,
-)
+from sdf_pose_bridge.cli.loading import pose_lookup, scene_from_file, scene_of, STANDARD_INPUT
 from sdf_pose_bridge.cli.printing import CommandError, discard_output, print_message
 from sdf_pose_bridge.geometry.pose_texts import FORMATS
 from sdf_pose_bridge.geometry.poses import Pose, pose_product
@@ -32,17 +27,17 @@ from sdf_pose_bridge.scene.scene import Scene
 _MOST_MOVED = 20
 """Largest number of moved frames that are named."""
 
+HELP = 'write a measured pose into a file'
+DESCRIPTION = (
+    'Change the numbers of the <pose> that places a frame to a measured pose.\n'
+    'Nothing else in the file changes. The change, and the other frames that move\n'
+    'with it, are printed.')
 
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command."""
-    parser = subparsers.add_parser(
-        'set', help='write a measured pose into a file',
-        description=(
-            'Change the numbers of the <pose> that places a frame to a measured pose.\n'
-            'Nothing else in the file changes. The change, and the other frames that move\n'
-            'with it, are printed.'
-        ),
-        epilog=formats_help(), formatter_class=argparse.RawDescriptionHelpFormatter)
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.epilog = formats_help()
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
     add_file_arguments(parser, takes_many=False)
     parser.add_argument(
         'frame', metavar='FRAME', help='a name as in SDF (robot::camera) or TF (robot/camera)')
@@ -68,7 +63,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         '--all-instances', action='store_true',
         help='accept that all instances of a file that is included more than once move')
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:

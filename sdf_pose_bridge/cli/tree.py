@@ -12,21 +12,16 @@ import math
 
 import numpy as np
 
-from sdf_pose_bridge.cli.loading import (
+from sdf_pose_bridge.cli.arguments import (
     add_file_arguments,
+    add_format_argument,
     add_frame_arguments,
-    print_frames,
+    add_unit_arguments,
+    argument_type,
     SHOWN_KINDS,
     tf_options_from_arguments,
 )
-from sdf_pose_bridge.cli.printing import (
-    add_format_argument,
-    add_unit_arguments,
-    argument_type,
-    BELOW,
-    Frame,
-    TableRow,
-)
+from sdf_pose_bridge.cli.frames import BELOW, Frame, print_frames, TableRow
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.scene.scene import Joint, Scene
@@ -36,14 +31,15 @@ from sdf_pose_bridge.tf.tree import DEFAULT_KINDS, elements_in_model, tf_tree_fr
 
 _WIDEST_INDENT = 60
 
+HELP = 'print the TF tree of files, or their elements by scope'
+DESCRIPTION = (
+    'Print the TF tree of files: each frame below its parent, with its kind and '
+    'its pose in the parent, x y z roll pitch yaw. The exit code is 1 if a file '
+    'has an error.')
 
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command."""
-    parser = subparsers.add_parser(
-        'tree', help='print the TF tree of files, or their elements by scope',
-        description='Print the TF tree of files: each frame below its parent, with its kind and '
-                    'its pose in the parent, x y z roll pitch yaw. The exit code is 1 if a file '
-                    'has an error.')
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
     add_file_arguments(parser)
     add_format_argument(parser, 'csv', 'json')
     parser.add_argument(
@@ -54,12 +50,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add_unit_arguments(parser)
     parser.add_argument(
         '--depth', metavar='N', default=math.inf,
-        type=argument_type(int, lambda depth: depth >= 0, 'is not a number of levels'),
+        type=argument_type(int, 'is not a number of levels', lambda depth: depth >= 0),
         help='print N levels below the root, and the number of frames below them')
     parser.add_argument(
         '--match', metavar='GLOB', default='',
         help='print only frames whose whole name matches, such as "*tool*", and those above them')
-    parser.set_defaults(run=run, kinds=())
+    parser.set_defaults(kinds=())
 
 
 def run(options: argparse.Namespace) -> int:

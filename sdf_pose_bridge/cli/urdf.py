@@ -8,19 +8,21 @@ import argparse
 from pathlib import Path
 import sys
 
-from sdf_pose_bridge.cli.loading import add_file_arguments, add_frame_arguments, scene_of
-from sdf_pose_bridge.cli.printing import argument_type, print_problems, write_text
+from sdf_pose_bridge.cli.arguments import add_file_arguments, add_frame_arguments, argument_type
+from sdf_pose_bridge.cli.loading import scene_of
+from sdf_pose_bridge.cli.printing import print_problems, write_text
 from sdf_pose_bridge.tf.urdf_text import urdf_from_scene
 
+HELP = 'write a model as URDF, whose links are the frames of TF'
+DESCRIPTION = (
+    'Write a model as URDF, for RViz, MoveIt, ros2_control and other readers of '
+    'robot_description. Its links are the frames that the node publishes for the '
+    'model, at every position of its joints. Elements that URDF cannot express '
+    'are left out, with a warning.')
 
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command."""
-    parser = subparsers.add_parser(
-        'urdf', help='write a model as URDF, whose links are the frames of TF',
-        description='Write a model as URDF, for RViz, MoveIt, ros2_control and other readers of '
-                    'robot_description. Its links are the frames that the node publishes for the '
-                    'model, at every position of its joints. Elements that URDF cannot express '
-                    'are left out, with a warning.')
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
     add_file_arguments(parser, takes_many=False)
     parser.add_argument(
         '-o', dest='output', metavar='PATH', type=Path,
@@ -28,13 +30,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add_frame_arguments(parser, 'make links of', 'write')
     parser.add_argument(
         '--frame-separator', metavar='TEXT', default='/', type=argument_type(
-            str, bool, 'must have at least one character, or names run together'),
+            str, 'must have at least one character, or names run together', bool),
         help='the text instead of "::" in the names of links; by default /')
     parser.add_argument(
         '--capsules', action='store_true',
         help='write <capsule>, which URDF has since version 1.2, instead of a cylinder and two '
              'spheres')
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:

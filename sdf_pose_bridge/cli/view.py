@@ -22,20 +22,16 @@ import time
 from types import ModuleType
 from typing import Any
 
-from sdf_pose_bridge.cli.loading import (
+from sdf_pose_bridge.cli.arguments import (
     add_file_arguments,
     add_frame_arguments,
-    scene_from_file,
-    STANDARD_INPUT,
-    tf_options_from_arguments,
-)
-from sdf_pose_bridge.cli.printing import (
     add_output_argument,
     add_unit_arguments,
     argument_type,
-    CommandError,
-    print_problems,
+    tf_options_from_arguments,
 )
+from sdf_pose_bridge.cli.loading import scene_from_file, STANDARD_INPUT
+from sdf_pose_bridge.cli.printing import CommandError, print_problems
 from sdf_pose_bridge.cli.viewer import LIBRARIES, UntestedViserError
 from sdf_pose_bridge.errors import FileReadError, LimitError, Place, SdfError
 from sdf_pose_bridge.geometry.units import Units
@@ -64,27 +60,27 @@ _ONLY_THE_SCENE = ('<style>body :not(canvas, :has(canvas)) {visibility: hidden} 
                    '.labels div {visibility: visible}</style>')
 _MOST_SECONDS = 300.0
 
+HELP = 'show frames and shapes in 3D'
+DESCRIPTION = (
+    'Show the frames of a file as axes (x red, y green, z blue) and the shapes of '
+    'visuals and collisions, with a slider for each joint. The page is served to '
+    'this machine alone, opens in the browser and follows the file until Ctrl-C. '
+    'With -o it is written instead, without sliders.')
 
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command."""
-    parser = subparsers.add_parser(
-        'view', help='show frames and shapes in 3D',
-        description='Show the frames of a file as axes (x red, y green, z blue) and the shapes of '
-                    'visuals and collisions, with a slider for each joint. The page is served to '
-                    'this machine alone, opens in the browser and follows the file until Ctrl-C. '
-                    'With -o it is written instead, without sliders.')
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
     add_file_arguments(parser, takes_many=False)
     add_output_argument(parser, _FORMATS, 'a page for .html, or a picture for .png')
     add_frame_arguments(parser)
     add_unit_arguments(parser)
     parser.add_argument(
         '--port', default=_PORT, metavar='N',
-        type=argument_type(int, lambda port: 0 <= port < 2 ** 16, 'is not a port, 0 to 65535'),
+        type=argument_type(int, 'is not a port, 0 to 65535', lambda port: 0 <= port < 2 ** 16),
         help=f'the port of the page, or the next free one; by default {_PORT}')
     parser.add_argument(
         '--edit', action='store_true',
         help='drag frames in the page, and write their poses into the file as "sdf_pose set" does')
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:

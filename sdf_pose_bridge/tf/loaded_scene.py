@@ -13,7 +13,7 @@ import enum
 from pathlib import Path
 from typing import NamedTuple
 
-from sdf_pose_bridge.errors import TemporaryReadError, SdfError, SdfWarning
+from sdf_pose_bridge.errors import SdfError, SdfWarning, TemporaryReadError
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.limits import MissingInclude
 from sdf_pose_bridge.tf.joint_positions import JointPositions, UnreportedJoints

@@ -17,7 +17,7 @@ from types import SimpleNamespace
 from command_line import COMMAND, ENVIRONMENT
 import pytest
 
-from sdf_pose_bridge.cli.main import main
+from sdf_pose_bridge.cli.main import main, new_parser
 
 GOOD = """<sdf version="1.10">
   <world name="w">
@@ -38,6 +38,13 @@ def folder_of_files(tmp_path):
     for name, text in (('good', GOOD), ('bad', BAD), ('warned', WARNED)):
         (tmp_path / f'{name}.sdf').write_text(text)
     return tmp_path
+
+
+@pytest.fixture
+def options(files, monkeypatch):
+    """Parses arguments of ``sdf_pose tree`` there: ``options('--kinds', 'link', 'good.sdf')``."""
+    monkeypatch.chdir(files)
+    return lambda *arguments: new_parser().parse_args(['tree', *arguments])
 
 
 @pytest.fixture

@@ -1,8 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The files of a command and the frames that its arguments choose."""
+"""The files of a command."""
 
-import argparse
 import os
 import pty
 import select
@@ -11,27 +10,8 @@ import subprocess
 from command_line import COMMAND, ENVIRONMENT
 import pytest
 
-from sdf_pose_bridge import Kind, SdfError
-from sdf_pose_bridge.cli.loading import (
-    add_file_arguments,
-    add_frame_arguments,
-    load_file,
-    scene_of,
-    tf_options_from_arguments,
-)
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-
-
-@pytest.fixture(name='options')
-def make_options(files, monkeypatch):
-    monkeypatch.chdir(files)
-
-    def parsed(*arguments):
-        parser = argparse.ArgumentParser()
-        add_file_arguments(parser)
-        add_frame_arguments(parser)
-        return parser.parse_args(arguments)
-    return parsed
+from sdf_pose_bridge import SdfError
+from sdf_pose_bridge.cli.loading import load_file, scene_of
 
 
 def test_an_invalid_file_has_errors_and_no_scene(options):
@@ -44,21 +24,6 @@ def test_a_command_that_needs_a_scene_ends_with_the_errors_of_its_file(options):
     with pytest.raises(SdfError) as error:
         scene_of('bad.sdf', options('bad.sdf'))
     assert [each.line for each in error.value.errors] == [3, 4]
-
-
-def test_frames_are_those_of_the_chosen_kinds(options):
-    chosen = options('--kinds', 'model,link', 'good.sdf')
-    scene = scene_of('good.sdf', chosen)
-    tree = tf_tree_from_scene(scene, tf_options_from_arguments(chosen))
-    assert {Kind(scene.kinds[element]) for element in tree.elements} == {Kind.MODEL, Kind.LINK}
-
-
-def test_an_unknown_kind_names_those_that_exist(options, capsys):
-    with pytest.raises(SystemExit):
-        options('--kinds', 'lnk', 'good.sdf')
-    error = capsys.readouterr().err
-    assert '"lnk" is not a kind of element; known are model' in error
-    assert error.endswith('; did you mean "link"?\n')
 
 
 def test_a_long_load_is_told_on_a_terminal(files):
@@ -90,12 +55,6 @@ def test_warnings_about_gazebo_are_counted(run_main, files):
     assert (done.returncode, done.stderr) == (
         0, 'r.urdf: "sdf_pose check" has 1 warning about Gazebo\n')
     assert 'LINK_INERTIA_INVALID' in run_main('check', 'r.urdf').stdout
-
-
-def test_a_missing_directory_of_models_is_an_error(options, capsys):
-    with pytest.raises(SystemExit):
-        options('-I', 'nowhere', 'good.sdf')
-    assert '"nowhere" is not a directory' in capsys.readouterr().err
 
 
 @pytest.mark.parametrize('command', [

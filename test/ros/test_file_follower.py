@@ -4,7 +4,7 @@
 
 import pytest
 
-from sdf_pose_bridge.errors import TemporaryReadError, Place, SdfError
+from sdf_pose_bridge.errors import Place, SdfError, TemporaryReadError
 from sdf_pose_bridge.ros import file_follower
 from sdf_pose_bridge.ros.file_follower import FileFollower
 from sdf_pose_bridge.tf.loaded_scene import LoadRequest

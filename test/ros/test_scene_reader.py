@@ -12,13 +12,13 @@ from sdf_pose_bridge.errors import (
     AddressError,
     FileReadError,
     LimitError,
-    TemporaryReadError,
     SdfError,
+    TemporaryReadError,
 )
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.ros.scene_reader import loaded_scene
-from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, is_temporary, LoadRequest
 from sdf_pose_bridge.tf.frame_change import write_frame_change
+from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, is_temporary, LoadRequest
 from sdf_pose_bridge.tf.visual_markers import markers_from_text
 
 CRASH = """import faulthandler, signal

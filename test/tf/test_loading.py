@@ -5,13 +5,10 @@
 import gc
 
 from lxml import etree
-import numpy as np
 import pytest
-from sdf_texts import joint, model_file, posed, world_file
+from sdf_texts import joint, model_file, world_file
 
-from sdf_pose_bridge import load_text
 from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.tf.frame_ids import FrameNaming
 from sdf_pose_bridge.tf.loaded_scene import DescriptionFormat, LoadRequest
 from sdf_pose_bridge.tf.loading import loaded_scene_from_request, unicode_text

@@ -1,0 +1,152 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Print the frames of files as a table, or as CSV or JSON for other programs."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Iterable, Mapping, Sequence
+import csv
+import shutil
+import sys
+from typing import Any, NamedTuple, TypeAlias
+
+from sdf_pose_bridge.cli.loading import load_file
+from sdf_pose_bridge.cli.printing import BOLD, DIM, print_json, print_problems, styled
+from sdf_pose_bridge.errors import SdfError, SdfWarning
+from sdf_pose_bridge.geometry.units import Units
+from sdf_pose_bridge.names import printable, shortened
+from sdf_pose_bridge.scene.scene import Scene
+
+_WIDEST_NAME, _NARROWEST_NAME = 80, 8
+_SHORT_KINDS = {'optical frame': 'optical', 'particle_emitter': 'emitter'}
+BELOW = str.maketrans('├└`-', '│   ')
+"""Translates the branches of a line into those below it."""
+
+_COLORS = {
+    'model': '\x1b[35m', 'link': '\x1b[32m', 'joint': '\x1b[33m', 'frame': '\x1b[36m',
+    'sensor': '\x1b[34m', 'optical': '\x1b[34m'}
+
+
+class TableRow(NamedTuple):
+    """A row of a table of frames."""
+
+    name: str
+    kind: str
+    values: Sequence[str] = ()
+    """The texts of the other columns; none if they are blank."""
+    note: str = ''
+    """The text of the line below."""
+    branches: str = ''
+    """The branches of a tree that are before the name, each with a space."""
+    is_bold: bool = False
+
+
+Frame: TypeAlias = tuple[Mapping[str, Any], TableRow]
+"""The record of a frame for other programs, and its row in a table."""
+
+
+def print_table(labels: Sequence[str], rows: Sequence[TableRow]) -> None:
+    """
+    Print a table of frames. On a terminal, names are shortened so that lines are not wrapped.
+
+    :param labels: the labels of the columns behind the kinds, such as x, y and z.
+    """
+    rows = [
+        row._replace(
+            name=printable(row.name[-2 * _WIDEST_NAME:]),
+            kind=_SHORT_KINDS.get(row.kind, row.kind), branches=_branches(row.branches),
+            values=row.values or ('',) * len(labels))
+        for row in (TableRow('frame', 'kind', labels), *rows)]
+    widths = [max(map(len, column)) for column in zip(*(row.values for row in rows), strict=True)]
+    kind_width = max(len(row.kind) for row in rows)
+    columns = shutil.get_terminal_size().columns if sys.stdout.isatty() else 2 * _WIDEST_NAME
+    width = min(
+        max(len(row.branches + row.name) for row in rows), _WIDEST_NAME,
+        max(columns - kind_width - sum(widths) - len(widths) - 3, _NARROWEST_NAME))
+    for name, kind, values, note, branches, is_bold in rows:
+        room = width - min(len(name), _NARROWEST_NAME)
+        branches = branches[max(len(branches) - room, 0):]
+        longest = width - len(branches)
+        # The end of a scoped name tells most.
+        name = name if len(name) <= longest else f'...{name[3 - longest:]}'
+        name = f'{name:{longest}}'
+        print(
+            styled(branches, DIM, sys.stdout)
+            + (styled(name, BOLD, sys.stdout) if is_bold else name)
+            + f'  {styled(f"{kind:{kind_width}}", _COLORS.get(kind, ""), sys.stdout)}  '
+            f'{" ".join(map(str.rjust, values, widths))}'.rstrip())
+        if note:
+            below = branches.translate(BELOW) + '  '
+            note = shortened(printable(note), columns - len(below))
+            print(styled(below + note, DIM, sys.stdout))
+
+
+def _branches(branches: str) -> str:
+    """Return the branches of a tree in characters that can be printed."""
+    try:
+        branches.encode(sys.stdout.encoding or 'ascii')
+    except UnicodeEncodeError:
+        return branches.replace('├ ', '|-').replace('└ ', '`-').replace('│', '|')
+    return branches
+
+
+def print_frames(
+    options: argparse.Namespace, member: str, columns: Sequence[str],
+    frames_of_scene: Callable[[Scene, argparse.Namespace, list[SdfWarning]], Sequence[Frame]],
+    pattern: str = '',
+) -> int:
+    """
+    Print the frames of files; continue after an invalid file.
+
+    :param member: the member of the JSON object that has the records.
+    :param columns: the columns of CSV: ``file``, members of the records, and numbers of poses.
+    :param frames_of_scene: returns the record of each frame, whose member ``pose`` is None if it
+        has no pose, and its row in a table without the pose; adds warnings to those of the file.
+    :param pattern: the pattern of names that the frames match, for a message if there are none.
+    :return: exit code: 0 if all files are valid, else 1.
+    """
+    exit_code, units = 0, Units(options.length_unit, options.angle_unit)
+    if options.format == 'csv':
+        print(*columns, sep=',')
+    for path in options.files:
+        scene, errors, (*warnings,) = load_file(path, options)
+        frames: Sequence[Frame] = ()
+        if scene is not None:
+            try:
+                frames = frames_of_scene(scene, options, warnings)
+            except SdfError as error:
+                errors = error.errors
+        exit_code |= bool(errors)
+        if options.format == 'json':
+            print_json(path, errors, warnings, **{member: [record for record, _ in frames]})
+            continue
+        print_problems(errors, warnings, sys.stderr)
+        if options.format == 'csv':
+            print_csv(columns, (
+                {'file': path, **record, **(record['pose']._asdict() if record['pose'] else {})}
+                for record, _ in frames))
+        elif not errors:
+            if len(options.files) > 1:
+                print(printable(path))
+            if pattern and not frames:
+                print(f'sdf_pose {options.command}: no whole name in {printable(path)} matches '
+                      f'"{printable(pattern)}"', file=sys.stderr)
+                continue
+            print_table(units.labels, [
+                row._replace(values=units.texts(record['pose'], fewer_digits=1))
+                if record['pose'] else row for record, row in frames])
+    return exit_code
+
+
+def print_csv(columns: Sequence[str], records: Iterable[Mapping[str, Any]]) -> None:
+    """
+    Print comma-separated values without a header.
+
+    Numbers have all their digits. Characters that control a terminal are escaped.
+
+    :param columns: keys of the records, in the order of printing; a missing value is left empty.
+    """
+    csv.writer(sys.stdout, lineterminator='\n').writerows(
+        [printable(value) if isinstance(value, str) else value
+         for value in map(record.get, columns)] for record in records)
