@@ -50,11 +50,14 @@ class Problems:
         self._errors = _First[SdfError]()
         self._warnings = _First[SdfWarning]()
         self._hints = 0
+        self.error_count = 0
+        """Number of errors that were added, with those that are not kept."""
         self.are_for_gazebo = False
         """Whether all warnings from now on concern Gazebo only."""
 
     def error(self, error: SdfError) -> None:
         """Add an error."""
+        self.error_count += 1
         self._errors.add(error, self._key(error))
 
     def warning(

@@ -23,6 +23,7 @@ from sdf_pose_bridge.sdformat.include.expansion import IncludeExpansion
 from sdf_pose_bridge.sdformat.include.merge import ModelByItself
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS, Limits, MissingInclude
+from sdf_pose_bridge.sdformat.poses import text_from_pose
 from sdf_pose_bridge.sdformat.reader import elements_from_tree
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
@@ -161,4 +162,4 @@ def _model_by_itself(root: XmlElement, sources: Sources) -> ModelByItself | None
     canonical_link = '' if link == NO_ELEMENT else (
         graph.names[link].removeprefix(f'{graph.names[model]}{SEPARATOR}'))
     pose = Pose(*poses_in_references(elements, graph)[model].tolist())
-    return ModelByItself(canonical_link, pose, bool(warnings))
+    return ModelByItself(canonical_link, text_from_pose(pose), bool(warnings))

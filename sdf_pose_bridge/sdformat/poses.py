@@ -27,7 +27,7 @@ from sdf_pose_bridge.sdformat.values import (
     number_from_word,
     plain_numbers_from_text,
 )
-from sdf_pose_bridge.sdformat.xml_tree import attribute_of, words_of, XmlElement
+from sdf_pose_bridge.sdformat.xml_tree import attribute_of, WHITE_SPACE, words_of, XmlElement
 
 _SHORTEST_QUATERNION = 1e-9
 """A quaternion with a smaller norm has no meaningful direction."""
@@ -37,6 +37,9 @@ _LARGEST_NORM = 1e150
 
 _NORM_TOLERANCE = 1e-3
 """A quaternion whose norm differs more from 1 is probably a mistake."""
+
+_IDENTITY = '0 0 0 0 0 0', '0 0 0 0 0 0 1'
+"""The poses that blank texts are, in Euler angles and with a quaternion."""
 
 _BEGINNING_OF_NUMBER = re.compile(r'[+-]?\.?[0-9]')
 
@@ -108,6 +111,7 @@ def pose_numbers_from_text(text: str, pose_format: PoseFormat) -> tuple[Sequence
         scaled; and a message if they are not the numbers that are written, else empty.
     :raises PoseTextError: if the text is not a pose.
     """
+    text = text.strip(WHITE_SPACE) or _IDENTITY[pose_format.is_quaternion]
     numbers, doubt = plain_numbers_from_text(text), ''
     if len(numbers) != (7 if pose_format.is_quaternion else 6):
         numbers = _numbers_from_words(text, pose_format)
@@ -128,7 +132,7 @@ def pose_numbers_from_text(text: str, pose_format: PoseFormat) -> tuple[Sequence
 def _numbers_from_words(text: str, pose_format: PoseFormat) -> Sequence[float]:
     layout = 'x y z qx qy qz qw' if pose_format.is_quaternion else 'x y z roll pitch yaw'
     count = 7 if pose_format.is_quaternion else 6
-    words = words_of(text) or list('0000001')[:count]
+    words = words_of(text)
     numbers: list[float] = []
     for word in words[:count]:
         read = number_from_word(word)

@@ -94,27 +94,8 @@ def elements_from_tree(
     sources = sources.of_unchanged_trees()
     if sources.may_hold_scoped_names:
         check_scoped_names(root, sources)
-    return _Reader(sources, sources.path(root), shapes=shapes, plugins=plugins).elements(root)
-
-
-def is_valid_element(
-    xml: XmlElement, definition: Definition, sources: Sources, *, with_children: bool = True,
-) -> bool:
-    """
-    Check the attributes and values in an element that is not read with the tree, or before it.
-
-    :param with_children: whether to check its child elements, too.
-    :param sources: takes errors and warnings.
-    :return: whether there are no errors.
-    """
-    part = sources.with_own_problems()
-    reader = _Reader(part)
-    if definition.value is None:
-        reader.read(xml, definition, reader.top, with_children=with_children)
-    else:
-        reader.read_value(xml, definition, definition.value, reader.top, NO_ELEMENT)
-    part.problems.extend_parent()
-    return not part.problems.errors
+    path = sources.path(root)
+    return ElementReader(sources, path, shapes=shapes, plugins=plugins).elements(root)
 
 
 class _Scope(NamedTuple):
@@ -131,7 +112,13 @@ class _Scope(NamedTuple):
     """Whether all values in it are checked already, as those of an included file."""
 
 
-class _Reader:
+class ElementReader:
+    """
+    Reads elements by their definitions.
+
+    :param sources: takes errors and warnings.
+    :param path: the file of the outermost element, for :meth:`elements`.
+    """
 
     def __init__(
         self, sources: Sources, path: str = '', *, shapes: bool = False, plugins: bool = False,
@@ -143,7 +130,7 @@ class _Reader:
         self._parts_of_actors = ElementsBuilder(sources.paths)
         """Links and joints of actors with their content, which are checked, but have no frames."""
         self._undefined = UndefinedReporter(sources)
-        self.top = _Scope(self._table, SiblingNames(self._table, sources), path)
+        self._top = _Scope(self._table, SiblingNames(self._table, sources), path)
         """The scope of the outermost element."""
         self._readers_of_details: dict[Kind, tuple[str, Callable[[XmlElement], Any]]] = {
             Kind.MODEL: ('models', _model_details),
@@ -168,7 +155,7 @@ class _Reader:
             if child_definition is None:
                 self._undefined.report_element(child, definition)
             elif child_definition.kind is Kind.WORLD:
-                self.read(child, child_definition, self.top)
+                self._read(child, child_definition, self._top)
             elif first:
                 self._check_attributes(child, child.keys(), child_definition)
                 error: type[SdfError] = DuplicateNameError
@@ -182,16 +169,32 @@ class _Reader:
                 first = described(child)
                 index = self._table.add(
                     Kind.ROOT, ROOT_FRAME, NO_ELEMENT, NO_ELEMENT,
-                    self._sources.file_indices[self.top.path], self._sources.line(child))
-                self.read(child, child_definition, self.top._replace(element=index), index)
+                    self._sources.file_indices[self._top.path], self._sources.line(child))
+                self._read(child, child_definition, self._top._replace(element=index), index)
         if not self._table.names:
             self._sources.warning(root, 'the file has no world, model, light or actor')
         self._parts_of_actors.elements(self._sources.problems)
         return self._table.elements(self._sources.problems)
 
+    def is_valid(
+        self, xml: XmlElement, definition: Definition, *, with_children: bool = True,
+    ) -> bool:
+        """
+        Check the attributes and values in an element that is not read with the tree, or before it.
+
+        :param with_children: whether to check its child elements, too.
+        :return: whether there are no errors.
+        """
+        before = self._sources.problems.error_count
+        if definition.value is None:
+            self._read(xml, definition, self._top, with_children=with_children)
+        else:
+            self._read_value(xml, definition, definition.value, self._top, NO_ELEMENT)
+        return self._sources.problems.error_count == before
+
     # The walk
 
-    def read(
+    def _read(
         self, xml: XmlElement, definition: Definition, scope: _Scope, parent: int = NO_ELEMENT,
         depth: int = 1, *, with_children: bool = True,
     ) -> None:
@@ -225,11 +228,11 @@ class _Reader:
             elif is_checked and not child_definition.concerns_frames:
                 pass
             elif child_definition.value is None:
-                self.read(child, child_definition, scope, element, depth + 1)
+                self._read(child, child_definition, scope, element, depth + 1)
             else:
-                self.read_value(child, child_definition, child_definition.value, scope, element)
+                self._read_value(child, child_definition, child_definition.value, scope, element)
 
-    def read_value(
+    def _read_value(
         self, xml: XmlElement, definition: Definition, rule: Item, scope: _Scope, parent: int,
     ) -> None:
         """Read an element that has a value instead of content."""

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 import copy
-from itertools import takewhile
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -100,7 +99,8 @@ class Sources:
         self._origins: dict[XmlElement, Origin] = {}
         self._lines: dict[XmlElement, int] = {}
         """The lines of elements for which lxml has another line or none."""
-        self._places: dict[XmlElement | None, Place] | None = None
+        self._places: dict[XmlElement, tuple[str, str]] | None = None
+        """The files and paths of elements with problems in them, in trees that do not change."""
 
     def with_own_problems(self) -> Sources:
         """Return the same sources with separate problems, which are added to the load later."""
@@ -152,9 +152,13 @@ class Sources:
         if lines:
             self.composed_trees.add(root)
 
-    def set_source(self, xml: XmlElement, source: XmlElement) -> None:
-        """Give an element, with the content that has no other source, the place of another one."""
-        self.set_origin(xml, file=self.path(source))
+    def set_source(self, xml: XmlElement, source: XmlElement, **changes: Any) -> None:
+        """
+        Give an element, with the content that has no other source, the place of another one.
+
+        :param changes: as for :meth:`set_origin`.
+        """
+        self.set_origin(xml, file=self.path(source), **changes)
         self._lines[xml] = self.line(source)
 
     def set_source_of_pose(self, xml: XmlElement, source: XmlElement) -> None:
@@ -170,7 +174,8 @@ class Sources:
 
     def set_origin(self, xml: XmlElement, **changes: Any) -> None:
         """Set fields of the origin of an element."""
-        self._origins[xml] = self.origin(xml)._replace(**changes)
+        known = self._origins.get(xml)
+        self._origins[xml] = Origin(**changes) if known is None else known._replace(**changes)
 
     def origin(self, xml: XmlElement) -> Origin:
         """Return the origin of an element."""
@@ -179,7 +184,8 @@ class Sources:
     def path(self, xml: XmlElement) -> str:
         """Return the path of the file of an element."""
         return next(
-            file for each in with_ancestors(xml) if (file := self.origin(each).file) is not None)
+            origin.file for each in with_ancestors(xml)
+            if (origin := self._origins.get(each)) is not None and origin.file is not None)
 
     def line(self, xml: XmlElement) -> int:
         """Return the line in which an element begins, from 1; 0 if it is not known."""
@@ -187,20 +193,28 @@ class Sources:
 
     def place(self, xml: XmlElement) -> Place:
         """Return the file and the line of an element, and its path in the tree."""
-        known = {} if self._places is None else self._places
-        unknown = list(takewhile(lambda each: each not in known, with_ancestors(xml)))
-        for each in reversed(unknown):
-            outer = known.get(each.getparent(), Place(''))
-            known[each] = Place(
-                self.origin(each).file or outer.file, element=f'{outer.element}/{_step(each)}')
-        place = known.pop(xml)  # only ancestors stay known
-        if len(known) > _MOST_PLACES_REMEMBERED:
-            known.clear()
-        return place._replace(
-            file=self.origin(xml).pose_file or place.file, line=self.line(xml))
+        file, element = self._file_and_path(xml)
+        return Place(self.origin(xml).pose_file or file, self.line(xml), element)
 
-    def copy_of(self, xml: XmlElement, user: XmlElement) -> XmlElement:
-        """Copy an element with its content and its places, counted as :meth:`count_copy`."""
+    def _file_and_path(self, xml: XmlElement) -> tuple[str, str]:
+        parent = xml.getparent()
+        outer = '', ''
+        if parent is not None and self._places is None:
+            outer = self._file_and_path(parent)
+        elif parent is not None:
+            if len(self._places) > _MOST_PLACES_REMEMBERED:
+                self._places.clear()
+            if parent not in self._places:
+                self._places[parent] = self._file_and_path(parent)
+            outer = self._places[parent]
+        return self.origin(xml).file or outer[0], f'{outer[1]}/{_step(xml)}'
+
+    def copy_of(self, xml: XmlElement, user: XmlElement, **changes: Any) -> XmlElement:
+        """
+        Copy an element with its content and its places, counted as :meth:`count_copy`.
+
+        :param changes: as for :meth:`set_origin`.
+        """
         self.count_copy(xml, user)
         result = copy_of(xml)
         if xml.getroottree().getroot() in self.composed_trees:
@@ -209,7 +223,7 @@ class Sources:
                     self._origins[new] = self._origins[old]
                 if old in self._lines:
                     self._lines[new] = self._lines[old]
-        self.set_origin(result, file=self.path(xml))
+        self.set_origin(result, file=self.path(xml), **changes)
         return result
 
 

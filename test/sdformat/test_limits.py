@@ -137,10 +137,6 @@ GROWING = {
     'a long tag': 20_000,
 }
 """Families of files that grow, and how often each repeats its part."""
-MOST_TIMES = {'merges with names': 20.0, 'missing includes beside many files': 20.0}
-"""The time, as a multiple of that of a plain file; 10 for other families. The time of a look at a
-folder depends on the machine."""
-
 
 def processor_s(path):
     """Return the processor time of a load, in which other work of the machine does not count."""
@@ -164,7 +160,6 @@ def test_time_grows_with_the_size_of_a_file_and_not_faster(tmp_path, family):
         # Other processes share the caches of the machine: the shortest of three or more counts.
         shortest_s = list(map(min, shortest_s, map(processor_s, paths)))
         hostile_s, half_s, plain_s = shortest_s
-        most = MOST_TIMES.get(family, 10.0)
-        if turn >= 2 and hostile_s < 2.6 * half_s and hostile_s < most * plain_s:
+        if turn >= 2 and hostile_s < 2.6 * half_s and hostile_s < 10.0 * plain_s:
             return
     pytest.fail(f'{hostile_s / half_s:.1f} times its half, {hostile_s / plain_s:.1f} times plain')

@@ -44,7 +44,7 @@ from sdf_pose_bridge.sdformat.include.manifests import model_file_from_directory
 from sdf_pose_bridge.sdformat.include.merge import merge, ModelByItself, ModelCheck
 from sdf_pose_bridge.sdformat.include.params import apply_params, definition_in_tree, TOP_TAGS
 from sdf_pose_bridge.sdformat.include.uris import index_of_entries, ResourceFinder
-from sdf_pose_bridge.sdformat.reader import is_valid_element
+from sdf_pose_bridge.sdformat.reader import ElementReader
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.values import TRUE_TEXTS
 from sdf_pose_bridge.sdformat.xml_tree import (
@@ -53,6 +53,7 @@ from sdf_pose_bridge.sdformat.xml_tree import (
     copy_of,
     described,
     first_child,
+    first_children,
     value_at,
     value_of,
     written_tag,
@@ -90,6 +91,7 @@ class IncludeExpansion:
         self._names_in = cache(index_of_entries)
         self._real_path = cache(os.path.realpath)
         self._sources = sources
+        self._reader = ElementReader(sources)
         self._skips_missing = skips_missing
         self._model_by_itself = model_by_itself
         self._files: dict[str, _IncludedFile] = {}
@@ -124,9 +126,9 @@ class IncludeExpansion:
             msg = 'the include has no <uri>, so it includes nothing'
             self._sources.error(AttributeMissingError, include, msg)
             return
-        if not is_valid_element(include, definition_of('include'), self._sources):
+        if not self._reader.is_valid(include, definition_of('include')):
             return
-        place, uri = self._sources.place(include), value_at(include, 'uri')
+        place, uri = self._sources.place(include), value_of(uri_xml)
         found = self._included_file(place, uri, files)
         if isinstance(found, str):
             self._report_missing(place._replace(
@@ -137,13 +139,11 @@ class IncludeExpansion:
             self._sources.error(type(fault), include, fault.message)
         if chosen is None:
             return
-        top = self._sources.copy_of(chosen, include)
-        self._sources.set_origin(top, include=place, is_checked=True)
-        part = self._sources.with_own_problems()
-        _override(include, top, part)
-        added = apply_params(include, top, part)
-        part.problems.extend_parent()
-        if part.problems.errors:
+        top = self._sources.copy_of(chosen, include, include=place, is_checked=True)
+        errors = self._sources.problems.error_count
+        _override(include, top, self._sources)
+        added = apply_params(include, top, self._sources, self._reader)
+        if self._sources.problems.error_count > errors:
             return
         for each in added:
             self._expand_in(each, files)
@@ -166,12 +166,13 @@ class IncludeExpansion:
         if other is not None and msg not in self._reported:
             self._reported.add(msg)
             self._sources.problems.warning(msg, place)
-        if os.path.isdir(path):  # noqa: PTH112
+        real_path = self._real_path(path)
+        if real_path not in self._files and os.path.isdir(path):  # noqa: PTH112
             chosen = self._model_file(path)
             if isinstance(chosen, str):
                 return chosen
             path = chosen.path
-        real_path = self._real_path(path)
+            real_path = self._real_path(path)
         if real_path in files:
             cycle = [*files[files.index(real_path):], real_path]
             names = ' -> '.join(Path(file).name for file in cycle)
@@ -219,7 +220,7 @@ class IncludeExpansion:
             self._sources.problems.extend(error.errors)
             return _IncludedFile(None, None)
         # Its copies are not checked again, except what includes change in them.
-        is_valid_element(document.root, definition_of('sdf'), self._sources)
+        self._reader.is_valid(document.root, definition_of('sdf'))
         if next(document.root.iter('include'), None) is not None:
             self._sources.composed_trees.add(document.root)
             self._expand_in(document.root, files)
@@ -257,6 +258,7 @@ class IncludeExpansion:
         def model_by_itself(root: XmlElement) -> ModelByItself | None:
             key = next((each for each in keys if each in self._merged_models), None)
             if key is None:
+                self._sources.set_source(root, include)
                 # Its elements are read twice.
                 self._sources.count_copy(root, include)
                 known = self._model_by_itself(root)
@@ -312,10 +314,11 @@ def _name_from_uri(uri: str) -> str:
 def _override(include: XmlElement, top: XmlElement, sources: Sources) -> None:
     """Set the attributes and values of an included element that its include has, too."""
     definition = definition_of(str(top.tag))
+    given = first_children(include)
     own = {
-        str(tag): xml for tag, each in definition_of('include').children.items()
-        if each.value is not None and (tag in definition.attributes or tag in definition.children)
-        and (xml := first_child(include, str(tag))) is not None}
+        str(tag): given[tag] for tag, each in definition_of('include').children.items()
+        if tag in given and each.value is not None
+        and (tag in definition.attributes or tag in definition.children)}
     for tag, new in own.items():
         if tag in definition.attributes:
             top.set(tag, value_of(new))

@@ -17,7 +17,6 @@ from typing import NamedTuple, TypeAlias
 from lxml import etree
 
 from sdf_pose_bridge.errors import AttributeInvalidError, MergeIncludeError
-from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import (
     MODEL_FRAME,
     PROXY_END,
@@ -32,7 +31,6 @@ from sdf_pose_bridge.sdformat.grammar import (
     PARTS_OF_MODEL,
     ValueType,
 )
-from sdf_pose_bridge.sdformat.poses import text_from_pose
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import (
     attribute_of,
@@ -44,7 +42,7 @@ from sdf_pose_bridge.sdformat.xml_tree import (
     XmlElement,
 )
 
-_POSES_OF_PARTS = '*[not(self::inertial)]/pose'
+_POSES_OF_PARTS = etree.XPath('*[not(self::inertial)]/pose')
 
 
 class ModelByItself(NamedTuple):
@@ -52,8 +50,8 @@ class ModelByItself(NamedTuple):
 
     canonical_link: str
     """The name of its canonical link in it; empty if it has none."""
-    pose: Pose
-    """Its model frame, in the frame that its ``<pose>`` is relative to."""
+    pose: str
+    """The text of a ``<pose>``: its model frame, in the frame that its own one is relative to."""
     has_warnings: bool
     """Whether there are warnings about that pose."""
 
@@ -123,19 +121,17 @@ def _proxy_frame(
         return None
     root = etree.Element('sdf')
     root.append(model)
-    sources.set_source(root, include)
     known = model_by_itself(root)
     if known is None:
         return None
-    proxy_pose.text = text_from_pose(known.pose)
+    proxy_pose.text = known.pose
     name = f'{PROXY_START}{attribute_of(model, "name")}{PROXY_END}'
     canonical_link = attribute_of(model, 'canonical_link') or known.canonical_link
     proxy = etree.Element('frame', {'name': name, 'attached_to': canonical_link})
     placement = attribute_of(model, 'placement_frame')
     proxy.append(proxy_pose)
-    sources.set_source(proxy, model)
-    sources.set_origin(
-        proxy, pose_file=sources.origin(model).pose_file, include=sources.origin(model).include,
+    sources.set_source(
+        proxy, model, pose_file=sources.origin(model).pose_file, include=sources.origin(model).include,
         is_named_by_include=first_child(include, 'name') is not None,
         placement_frame=name if placement == MODEL_FRAME else placement)
     return proxy
@@ -146,7 +142,7 @@ def _replace_model_frame(
 ) -> None:
     """Let references to the model frame refer to the proxy frame."""
     # libsdformat does not adapt the poses of visuals and similar elements.
-    for pose in xml.xpath(_POSES_OF_PARTS) if definition.kind not in (None, Kind.MODEL) else ():
+    for pose in _POSES_OF_PARTS(xml) if definition.kind not in (None, Kind.MODEL) else ():
         if attribute_of(pose, 'relative_to') == MODEL_FRAME:
             msg = ('relative_to="__model__" means the model that this is merged into, not the one '
                    'that it was written in')

@@ -28,7 +28,7 @@ from sdf_pose_bridge.sdformat.grammar import (
 )
 from sdf_pose_bridge.sdformat.include.element_ids import ElementIds, hint_for_id
 from sdf_pose_bridge.sdformat.joints import DEFAULT_END
-from sdf_pose_bridge.sdformat.reader import is_valid_element
+from sdf_pose_bridge.sdformat.reader import ElementReader
 from sdf_pose_bridge.sdformat.sources import PARAMS_TAG, Sources
 from sdf_pose_bridge.sdformat.xml_tree import (
     child_elements,
@@ -50,17 +50,20 @@ _PARTS = {
 """Child elements with references, which are defined in the file of their parent element."""
 
 
-def apply_params(include: XmlElement, top: XmlElement, sources: Sources) -> list[XmlElement]:
+def apply_params(
+    include: XmlElement, top: XmlElement, sources: Sources, reader: ElementReader,
+) -> list[XmlElement]:
     """
     Change an included element by the first ``<experimental:params>`` of its include.
 
     :param sources: takes errors and warnings. A parameter with an error is not applied.
+    :param reader: checks the elements that are changed.
     :return: the elements that were added.
     """
     params = next((xml for xml in child_elements(include) if written_tag(xml) == PARAMS_TAG), None)
     if params is None:
         return []
-    changer = _Changer(top, sources)
+    changer = _Changer(top, sources, reader)
     for xml in child_elements(params):
         changer.apply(xml)
     return changer.added
@@ -68,11 +71,12 @@ def apply_params(include: XmlElement, top: XmlElement, sources: Sources) -> list
 
 class _Changer:
 
-    def __init__(self, top: XmlElement, sources: Sources) -> None:
+    def __init__(self, top: XmlElement, sources: Sources, reader: ElementReader) -> None:
         self.added: list[XmlElement] = []
         self._top = top
         self._ids = ElementIds(top)
         self._sources = sources
+        self._reader = reader
         self._error = sources.error
         self._actions = {
             'modify': self._modify, 'remove': self._remove, 'replace': self._replace}
@@ -152,7 +156,7 @@ class _Changer:
                     attribute not in definition.attributes and ':' not in attribute):
                 del element.attrib[attribute]
         self._sources.set_source(element, xml)
-        is_valid_element(element, definition, self._sources)
+        self._reader.is_valid(element, definition)
         self.added.append(element)
         return element
 
@@ -242,7 +246,7 @@ class _Changer:
                 self._ids.add(target, in_place_of=target)
             self._set_source(target, xml)
             if definition is not None:
-                is_valid_element(target, definition, self._sources, with_children=False)
+                self._reader.is_valid(target, definition, with_children=False)
 
     def _set_source(self, target: XmlElement, xml: XmlElement) -> None:
         """Move the place of an element, and of ancestors up to that with the id, to the params."""
