@@ -24,6 +24,9 @@ from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 _END_OF_FOLDER = re.compile('(?<=[^/:])/')
 """The end of a package, model or folder in a URI."""
 
+_MOST_MISSING = 50
+"""Largest number of missing meshes, or folders of them, after which no more are looked for."""
+
 _ESCAPES = str.maketrans({'%': '%25', '\r': '%0D', '\n': '%0A'})
 _ESCAPES_OF_PROPERTIES = {**_ESCAPES, **str.maketrans({':': '%3A', ',': '%2C'})}
 
@@ -87,7 +90,8 @@ def _doubts_about_shapes(scene: Scene, resource_paths: Sequence[str]) -> tuple[S
             places[key] = min(place, places.get(key, place), key=lambda each: each.line)
     missing: defaultdict[tuple[str, str], list[str]] = defaultdict(list)
     path_from_uri, names_in = cache(finder.path_from_uri), cache(index_of_entries)
-    for uri, file in sorted(places, key=lambda key: places[key].line):
+    waiting = iter(sorted(places, key=lambda key: places[key].line))
+    for uri, file in waiting:
         # Most missing files are in missing folders, of which there are fewer. Each model of Fuel
         # is fetched by itself.
         folders = [] if uri.lower().startswith('http') else [
@@ -95,14 +99,17 @@ def _doubts_about_shapes(scene: Scene, resource_paths: Sequence[str]) -> tuple[S
         part = next((each for each in folders if path_from_uri(each, file) is None), uri)
         if part != uri or finder.file_from_uri(uri, file) is None:
             missing[part, file].append(uri)
+        if len(missing) == _MOST_MISSING:
+            break
     for (folder, file), uris in missing.items():
-        if not problems.keeps_warnings():
-            problems.count_more(0, 1)
-            continue
         others = f', like {len(uris) - 1} more of "{shortened(folder)}"' if uris[1:] else ''
         problems.warning(
             f'the mesh "{shortened(uris[0])}" is not found{others}: '
             f'{finder.reason_not_found(uris[0], file, names_in)}', places[uris[0], file])
+    if rest := list(waiting):
+        problems.warning(
+            f'this mesh and those that follow, {len(rest)} in all, are not looked for, as '
+            f'{_MOST_MISSING} are missing', places[rest[0]])
     return problems.warnings
 
 
