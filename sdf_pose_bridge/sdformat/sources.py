@@ -183,9 +183,8 @@ class Sources:
 
     def path(self, xml: XmlElement) -> str:
         """Return the path of the file of an element."""
-        return next(
-            origin.file for each in with_ancestors(xml)
-            if (origin := self._origins.get(each)) is not None and origin.file is not None)
+        origins = (self._origins.get(each, _PARSED) for each in with_ancestors(xml))
+        return next(origin.file for origin in origins if origin.file is not None)
 
     def line(self, xml: XmlElement) -> int:
         """Return the line in which an element begins, from 1; 0 if it is not known."""
@@ -197,16 +196,17 @@ class Sources:
         return Place(self.origin(xml).pose_file or file, self.line(xml), element)
 
     def _file_and_path(self, xml: XmlElement) -> tuple[str, str]:
-        parent = xml.getparent()
-        outer = '', ''
-        if parent is not None and self._places is None:
+        parent, known = xml.getparent(), self._places
+        if parent is None:
+            outer = '', ''
+        elif known is not None and parent in known:
+            outer = known[parent]
+        else:
             outer = self._file_and_path(parent)
-        elif parent is not None:
-            if len(self._places) > _MOST_PLACES_REMEMBERED:
-                self._places.clear()
-            if parent not in self._places:
-                self._places[parent] = self._file_and_path(parent)
-            outer = self._places[parent]
+            if known is not None:
+                if len(known) == _MOST_PLACES_REMEMBERED:
+                    known.clear()
+                known[parent] = outer
         return self.origin(xml).file or outer[0], f'{outer[1]}/{_step(xml)}'
 
     def copy_of(self, xml: XmlElement, user: XmlElement, **changes: Any) -> XmlElement:

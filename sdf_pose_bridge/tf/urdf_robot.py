@@ -35,6 +35,11 @@ NO_LIMIT = 1e16
 """The usual value in URDF and Gazebo for no limit."""
 
 
+_LONGEST_NAMES = 50_000_000
+"""Largest length of all names in a URDF together. The scoped names of a small file can have any
+length, and a text is copied several times before it is written."""
+
+
 class UrdfMimic(NamedTuple):
     """The joint that a joint follows: ``multiplier * position + offset``."""
 
@@ -155,6 +160,7 @@ class _RobotMaker:
         while waiting:
             links.append(waiting.pop())
             waiting += reversed(self._children[links[-1].name])
+        self._check_length(links)
         return UrdfRobot(
             scene.own_name(self._model),
             frozenset(np.flatnonzero(elements_in_model(scene, scene.names[self._model])).tolist()),
@@ -178,6 +184,18 @@ class _RobotMaker:
                 f'"{name}" is fixed to "{tree.root_frame}" in URDF, since nothing else holds it '
                 'and URDF has only one tree', scene.place(self._elements[frame]))
         return tree.root_frame, -1
+
+    def _check_length(self, links: Sequence[UrdfLink]) -> None:
+        # The name of a link is written as that of the link and as the child of its joint.
+        length = sum(
+            2 * len(link.name) + (
+                len(link.joint.name) + len(link.joint.parent) if link.joint is not None else 0)
+            for link in links)
+        if length > _LONGEST_NAMES:
+            msg = (f'the names in the URDF would have {length} characters together, and it may '
+                   f'have {_LONGEST_NAMES}; shorten the names of models, or make names relative '
+                   'to the model (frame_names)')
+            raise UrdfNotMadeError(msg, self._scene.place(self._model))
 
     # Joints
 

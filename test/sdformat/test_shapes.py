@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from sdf_texts import codes_of, link_with
+from sdf_texts import codes_of, errors_of_file, link_with, model_file, world_file, write_files
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.sdformat.shapes import Shape
@@ -128,6 +128,26 @@ def test_shape_has_an_extent_if_its_sizes_are_positive(sizes_m, has_extent):
 def test_wrong_material_is_refused(content, code):
     visual = f'<visual name="v"><material>{content}</material></visual>'
     assert codes_of(link_with(visual)) == [code]
+
+
+# libsdformat reports all materials before all references of joints.
+@pytest.mark.parametrize('order', [['ELEMENT_INVALID', 'JOINT_PARENT_LINK_INVALID'],
+                                   ['JOINT_PARENT_LINK_INVALID', 'ELEMENT_INVALID']])
+def test_errors_of_materials_and_joints_are_in_the_order_of_their_lines(order):
+    parts = {
+        'ELEMENT_INVALID': '<link name="l"><visual name="v"><material><script><name>n</name>'
+                           '</script></material></visual></link>',
+        'JOINT_PARENT_LINK_INVALID': '<joint name="j" type="fixed"><parent>none</parent>'
+                                     '<child>l</child></joint>'}
+    assert codes_of(model_file('\n'.join(parts[code] for code in order))) == order
+
+
+def test_errors_of_an_included_file_follow_those_of_the_file(tmp_path):
+    link = '<link name="l"><visual name="v"><material><script/></material></visual></link>'
+    write_files(tmp_path, part=model_file('', version='1.99'), main=world_file(
+        f'<include><uri>part.sdf</uri></include>\n<model name="m">{link}</model>'))
+    assert [error.code for error in errors_of_file(tmp_path / 'main.sdf')] == [
+        'ELEMENT_INVALID', 'ELEMENT_MISSING', 'CONVERSION_ERROR']
 
 
 def test_submesh_without_a_name_is_refused():

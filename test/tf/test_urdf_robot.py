@@ -18,6 +18,7 @@ from random_scenes import random_scenes
 from sdf_pose_bridge import Kind, load_text, scene_at_positions, SdfError, UnknownFrameError
 from sdf_pose_bridge.errors import UrdfNotMadeError
 from sdf_pose_bridge.tf.anchors import AnchorModels
+from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.joint_positions import JointPositions, UnreportedJoints
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
@@ -69,6 +70,14 @@ def test_world_without_one_model_is_refused(content, reason):
 def test_unknown_model_is_refused():
     with pytest.raises(UnknownFrameError, match='no model "c"'):
         robot_of(world_file(MODEL.format('a')), model='c')
+
+
+def test_names_that_would_fill_the_memory_are_refused():
+    links = ''.join(f'<link name="{i}"/>' for i in range(450))
+    text = model_file(links).replace('"m"', f'"{"m" * 30_000}"')
+    robot_of(text)
+    with pytest.raises(UrdfNotMadeError, match='characters together'):
+        robot_of(text, frame_names=FrameNames.SCOPED)
 
 
 def test_two_links_with_one_name_are_refused():

@@ -131,7 +131,8 @@ def _proxy_frame(
     placement = attribute_of(model, 'placement_frame')
     proxy.append(proxy_pose)
     sources.set_source(
-        proxy, model, pose_file=sources.origin(model).pose_file, include=sources.origin(model).include,
+        proxy, model, include=sources.origin(model).include,
+        pose_file=sources.origin(model).pose_file,
         is_named_by_include=first_child(include, 'name') is not None,
         placement_frame=name if placement == MODEL_FRAME else placement)
     return proxy
