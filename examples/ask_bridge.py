@@ -29,7 +29,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_srvs.srv import Trigger
 
-from sdf_pose_bridge.ros.topic_names import topic_name_from_frame_id
+from sdf_pose_bridge.tf.frame_ids import topic_name_from_frame_id
 from sdf_pose_bridge_interfaces.srv import ConvertPoses, ConvertRotation, LookupPose
 
 

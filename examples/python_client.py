@@ -19,7 +19,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.task import Future
 
-from sdf_pose_bridge.ros.topic_names import topic_name_from_frame_id
+from sdf_pose_bridge.tf.frame_ids import topic_name_from_frame_id
 from sdf_pose_bridge_interfaces.srv import ConvertRotation, LookupPose
 
 

@@ -12,14 +12,13 @@ import re
 import sys
 
 from sdf_pose_bridge.cli.arguments import add_file_arguments, add_format_argument
-from sdf_pose_bridge.cli.loading import load_file
+from sdf_pose_bridge.cli.loading import doubts_about_frames, load_file
 from sdf_pose_bridge.cli.printing import in_order, print_json, print_problems
 from sdf_pose_bridge.errors import Place, SdfError, SdfWarning
 from sdf_pose_bridge.names import printable, shortened
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.include.uris import index_of_entries, resource_finder
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
 _END_OF_FOLDER = re.compile('(?<=[^/:])/')
 """The end of a package, model or folder in a URI."""
@@ -51,7 +50,7 @@ def run(options: argparse.Namespace) -> int:
         scene, errors, warnings = load_file(path, options, shapes=True)
         if scene is not None:
             warnings = in_order(
-                warnings, _doubts_about_frames(scene),
+                warnings, doubts_about_frames(scene),
                 _doubts_about_shapes(scene, options.resource_paths))
         if options.format == 'json':
             print_json(path, errors, warnings)
@@ -62,16 +61,6 @@ def run(options: argparse.Namespace) -> int:
         if errors or (options.strict and warnings):
             exit_code = 1
     return exit_code
-
-
-def _doubts_about_frames(scene: Scene) -> tuple[SdfWarning, ...]:
-    # An error of the tree is a warning, as with other parameters the tree may be valid.
-    try:
-        return tf_tree_from_scene(scene).warnings
-    except SdfError as error:
-        return tuple(
-            SdfWarning(each.code, f'{each.message}; by default, the node rejects this', each.place)
-            for each in error.errors)
 
 
 def _doubts_about_shapes(scene: Scene, resource_paths: Sequence[str]) -> tuple[SdfWarning, ...]:

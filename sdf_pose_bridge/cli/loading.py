@@ -26,7 +26,7 @@ STANDARD_INPUT = '-'
 
 def scene_from_file(
     path: str, options: argparse.Namespace, texts: Mapping[str, bytes] | None = None, *,
-    shapes: bool = False,
+    shapes: bool = False, plugins: bool = False,
 ) -> Scene:
     """
     Load a file, or a pipe such as the shell's ``<(command)``.
@@ -46,7 +46,7 @@ def scene_from_file(
         text = bytes_from_file('/dev/stdin' if is_input else path, Usage(), allows_pipe=True)
         return load_text(
             text, '<stdin>' if is_input else path,
-            resource_paths=options.resource_paths, shapes=shapes, texts=texts,
+            resource_paths=options.resource_paths, shapes=shapes, plugins=plugins, texts=texts,
             on_missing_include='skip' if options.skip_missing else 'error')
     finally:
         timer.cancel()
@@ -63,11 +63,24 @@ def load_file(
     return scene, (), scene.warnings
 
 
-def scene_of(path: str, options: argparse.Namespace, *, shapes: bool = False) -> Scene:
+def scene_of(
+    path: str, options: argparse.Namespace, *, shapes: bool = False, plugins: bool = False,
+) -> Scene:
     """Load a file as :func:`scene_from_file`, and print its warnings to standard error."""
-    scene = scene_from_file(path, options, shapes=shapes)
+    scene = scene_from_file(path, options, shapes=shapes, plugins=plugins)
     print_problems((), scene.warnings, sys.stderr)
     return scene
+
+
+def doubts_about_frames(scene: Scene) -> tuple[SdfWarning, ...]:
+    """Return the warnings about the frames that the node publishes by default."""
+    # An error of the tree is a warning, as with other parameters the tree may be valid.
+    try:
+        return tf_tree_from_scene(scene).warnings
+    except SdfError as error:
+        return tuple(
+            SdfWarning(each.code, f'{each.message}; by default, the node rejects this', each.place)
+            for each in error.errors)
 
 
 def pose_lookup(scene: Scene) -> PoseLookup:

@@ -18,7 +18,7 @@ import time
 from typing import Any, NoReturn
 
 import sdf_pose_bridge
-from sdf_pose_bridge.cli import check, convert, diff, graph, poses, tree, urdf, view
+from sdf_pose_bridge.cli import check, convert, diff, graph, gz_bridge, poses, tree, urdf, view
 from sdf_pose_bridge.cli import set as set_command
 from sdf_pose_bridge.cli.printing import (
     CommandError,
@@ -135,9 +135,11 @@ def new_parser() -> argparse.ArgumentParser:
     parser = _Parser(
         prog='sdf_pose',
         description='Poses and frames of SDFormat files, exactly as libsdformat resolves them.')
-    parser.add_argument('--version', action='store_true', help='show the version and exit')
+    # The short name also makes the column of names wide enough for those of all commands.
+    parser.add_argument(
+        '-V', '--version', action='store_true', help='show the version and exit')
     subparsers = parser.add_subparsers(dest='command', metavar='COMMAND', title='commands')
-    for command in (check, poses, tree, graph, view, urdf, convert, diff, set_command):
+    for command in (check, poses, tree, graph, view, urdf, gz_bridge, convert, diff, set_command):
         name = command.__name__.rpartition('.')[2]
         subparser = subparsers.add_parser(
             name, help=command.HELP, description=command.DESCRIPTION)

@@ -1,28 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Choose the frames that get a pose topic, and name the topics; name the topics that are followed.
-
-A frame id may contain any character that XML allows. A level of a topic name consists of ASCII
-letters, digits and underscores and starts with a letter (if it starts with an underscore, it is
-legal but hidden from ``ros2 topic list``). The rule for each level between slashes:
-
-* Letters, digits and single underscores stay: ``robot/arm_2/tool`` is its own topic name.
-* A run of other characters becomes ``_x<hex>_``, where ``<hex>`` are the bytes of its UTF-8 text,
-  two lower-case digits each: ``left camera`` becomes ``left_x20_camera``, ``link-1`` becomes
-  ``link_x2d_1``. Underscores beside such a run, and runs of underscores, belong to it:
-  ``a__b`` becomes ``a_x5f5f_b``.
-* At the beginning of a level the escape has no first underscore, and a digit or an underscore
-  there is escaped too: ``3d_map`` becomes ``x33_d_map``.
-* An empty level becomes ``x_``.
-* Text that looks like an escape is escaped at its first character: ``a_x20_b`` becomes
-  ``a_x5f_x20_b``.
-* A name longer than the limit is cut, and ends with ``_xh<hex>_``, 32 digits of the SHA-256 of
-  the frame id.
-
-So two frame ids never have the same name (as surely as SHA-256 for names that were cut), and a
-name depends only on its frame id and the limit.
-"""
+"""Choose the frames that get a pose topic; name these topics, and those that are followed."""
 
 from __future__ import annotations
 
@@ -35,16 +13,11 @@ from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.ros.log_lines import names_in_line
 from sdf_pose_bridge.ros.parameters import Settings, SettingsError
 from sdf_pose_bridge.ros.setting_rules import MODEL_FIELD, WORLD_FIELD
+from sdf_pose_bridge.tf.frame_ids import LONGEST_NAME, SHORTEST_LIMIT, topic_name_from_frame_id
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 
 LONGEST_FULL_NAME = 246
 """Largest length of the full name of a topic in the middleware."""
-
-LONGEST_NAME = 160
-"""Default limit of a name; the rest is for the node's namespace, its name and ``poses``."""
-
-SHORTEST_LIMIT = 48
-"""With a lower limit, a cut name would have no readable part before its hash."""
 
 MOST_BY_DEFAULT = 1000
 """Largest number of topics that are made by default; each takes time and memory."""
@@ -57,18 +30,6 @@ LONGEST_MATCHED = 10_000
 """Longest frame id that is compared with patterns; other threads wait for each comparison."""
 
 _WILDCARD = re.compile(r'[*?[]')
-
-_ESCAPED = re.compile(r"""
-    \A[0-9_][^A-Za-z0-9]*                             # a digit or underscores at the beginning
-    | _*[^A-Za-z0-9_][^A-Za-z0-9]*                    # others, with the underscores beside them
-    | __+
-    | (?=_?x(?:[0-9a-f]{2})+[^A-Za-z0-9])(?:\Ax|_)    # text that reads as an escape
-    | \Ax_\Z                                          # text that reads as an empty level
-    """, re.VERBOSE)
-"""The runs of characters in a level that are escaped."""
-
-_CUT = re.compile(r'_xh[0-9a-f]{32}_$')
-_CUT_LENGTH = len('_xh_') + 32
 
 
 class PoseTopics(NamedTuple):
@@ -90,23 +51,6 @@ class StateTopics(NamedTuple):
     """In the same way: the scoped name of the free model whose pose is on the topic."""
     warnings: tuple[str, ...] = ()
     """A sentence about each topic that differs from the patterns."""
-
-
-def topic_name_from_frame_id(frame_id: str, limit: int = LONGEST_NAME) -> str:
-    """
-    Return the name of a frame's topic by the rule above.
-
-    :param frame_id: any text.
-    :param limit: largest length of the name; at least ``SHORTEST_LIMIT``.
-    :return: a legal relative topic name without hidden levels.
-    """
-    name = '/'.join(_level_from_text(level) for level in frame_id.split('/'))
-    if len(name) <= limit and not _CUT.search(name):
-        return name
-    # Imported here because it is slow to import and rarely needed.
-    import hashlib
-    digest = hashlib.sha256(_bytes_from_text(frame_id)).hexdigest()[:32]
-    return f'{name[:limit - _CUT_LENGTH].rstrip("_/")}_xh{digest}_'
 
 
 def pose_topics_from_patterns(
@@ -250,14 +194,3 @@ def check_number_of_topics(settings: Settings, positions: JointPositions | None)
                 f'{MOST_BY_DEFAULT} are allowed; set it without {MODEL_FIELD}, or publish some of '
                 'the models by another node')
             raise SettingsError([sentence])
-
-
-def _level_from_text(text: str) -> str:
-    if not text:
-        return 'x_'
-    level = _ESCAPED.sub(lambda run: f'_x{_bytes_from_text(run[0]).hex()}_', text)
-    return level.removeprefix('_')
-
-
-def _bytes_from_text(text: str) -> bytes:
-    return text.encode('utf-8', 'surrogatepass')

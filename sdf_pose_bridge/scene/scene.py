@@ -18,11 +18,10 @@ from sdf_pose_bridge.geometry.chains import ends_from_pointers, Indices
 from sdf_pose_bridge.geometry.poses import canonical_relative_pose, Pose, PoseArray
 from sdf_pose_bridge.names import hint_from_names, listed, scoped_name, SEPARATOR
 from sdf_pose_bridge.scene.frame_graph import default_references
-from sdf_pose_bridge.sdformat.elements import SensorDetails
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.inertials import Inertial
 from sdf_pose_bridge.sdformat.joints import JointAxis
-from sdf_pose_bridge.sdformat.plugins import Plugin
+from sdf_pose_bridge.sdformat.plugins import Plugin, SensorDetails
 from sdf_pose_bridge.sdformat.shapes import Shape
 
 

@@ -21,7 +21,7 @@ from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.inertials import AutomaticInertial, Inertial
 from sdf_pose_bridge.sdformat.joints import JointDetails
-from sdf_pose_bridge.sdformat.plugins import Plugin
+from sdf_pose_bridge.sdformat.plugins import Plugin, SensorDetails
 from sdf_pose_bridge.sdformat.poses import (
     pose_doubts,
     PoseFormat,
@@ -56,19 +56,6 @@ class FrameDetails(NamedTuple):
     placement_frame: str = ''
     """The frame that the include of a merged model places, if this is the model's proxy; empty for
     this one."""
-
-
-class SensorDetails(NamedTuple):
-    """Details of a sensor."""
-
-    type: str
-    """As written: ``camera``, ``gpu_lidar``, ..."""
-    frame_id: str
-    """The frame id of Gazebo's messages if the file sets it; else empty."""
-    is_camera: bool
-    """Whether it has an optical frame."""
-    optical_frame_id: str
-    """The id of the optical frame if the file sets it; else empty."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -1,16 +1,32 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Read the plugins of Gazebo in elements. Source of their names: gz-sim 8 to 10."""
+"""Read plugins of Gazebo, and details of sensors. Source of names of plugins: gz-sim 8 to 10."""
 
 from __future__ import annotations
 
 import re
 from typing import NamedTuple
 
-from sdf_pose_bridge.sdformat.xml_tree import attribute_of, child_elements, value_of, XmlElement
+from sdf_pose_bridge.sdformat.specification import CAMERA_TYPES
+from sdf_pose_bridge.sdformat.xml_tree import (
+    attribute_of,
+    child_elements,
+    first_child,
+    value_at,
+    value_of,
+    XmlElement,
+)
 
 _CLASS = re.compile(r'(?:gz::sim|ignition::gazebo)::systems::(\w+)')
 _LIBRARY = re.compile(r'(?:lib)?(?:gz-sim|ignition-gazebo)\d*-(.+)-system(?:\.so)?')
+
+_FRAME_ID_TAGS = ('frame_id', 'gz_frame_id', 'ignition_frame_id')
+"""Elements of a sensor with the frame id of its messages; the first of them counts."""
+
+_TOPIC_PATHS = (
+    'topic', 'camera/camera_info_topic', 'camera/triggered', 'camera/trigger_topic',
+    'camera/box_type', 'contact/topic')
+"""Elements of a sensor on which its topics depend."""
 
 
 class Plugin(NamedTuple):
@@ -39,3 +55,30 @@ def plugins_of(xml: XmlElement) -> tuple[Plugin, ...]:
             attribute_of(plugin, 'filename'), attribute_of(plugin, 'name'),
             tuple((str(each.tag), value_of(each)) for each in child_elements(plugin)))
         for plugin in child_elements(xml, 'plugin'))
+
+
+class SensorDetails(NamedTuple):
+    """Details of a sensor."""
+
+    type: str
+    """As written: ``camera``, ``gpu_lidar``, ..."""
+    frame_id: str
+    """The frame id of Gazebo's messages if the file sets it; else empty."""
+    is_camera: bool
+    """Whether it has an optical frame."""
+    optical_frame_id: str
+    """The id of the optical frame if the file sets it; else empty."""
+    topics: tuple[tuple[str, str], ...] = ()
+    """The path and the value of each element on which its topics depend, such as ``topic``; none
+    unless plugins were requested."""
+
+
+def sensor_details_from_element(xml: XmlElement, *, reads_topics: bool) -> SensorDetails:
+    """Return the details of a sensor."""
+    frame_ids = (value_of(each) for tag in _FRAME_ID_TAGS for each in child_elements(xml, tag))
+    sensor_type = attribute_of(xml, 'type')
+    values = ((path, value_at(xml, path)) for path in _TOPIC_PATHS if reads_topics)
+    return SensorDetails(
+        sensor_type, next(filter(None, frame_ids), ''),
+        first_child(xml, 'camera') is not None or sensor_type in CAMERA_TYPES,
+        value_at(xml, 'camera/optical_frame_id'), tuple(each for each in values if each[1]))

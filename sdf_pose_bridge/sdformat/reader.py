@@ -30,12 +30,11 @@ from sdf_pose_bridge.sdformat.elements import (
     FrameDetails,
     ModelDetails,
     NO_ELEMENT,
-    SensorDetails,
 )
 from sdf_pose_bridge.sdformat.grammar import Definition, definition_of, Item, Kind
 from sdf_pose_bridge.sdformat.inertials import inertial_from_element
 from sdf_pose_bridge.sdformat.joints import check_children_of_joint, joint_details_from_element
-from sdf_pose_bridge.sdformat.plugins import plugins_of
+from sdf_pose_bridge.sdformat.plugins import plugins_of, sensor_details_from_element
 from sdf_pose_bridge.sdformat.poses import (
     EULER_RPY,
     pose_format_of,
@@ -45,7 +44,7 @@ from sdf_pose_bridge.sdformat.poses import (
 from sdf_pose_bridge.sdformat.shapes import check_material, check_submesh, shape_of
 from sdf_pose_bridge.sdformat.sibling_names import check_scoped_names, SiblingNames
 from sdf_pose_bridge.sdformat.sources import Sources
-from sdf_pose_bridge.sdformat.specification import CAMERA_TYPES, URDF_TAGS
+from sdf_pose_bridge.sdformat.specification import URDF_TAGS
 from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
 from sdf_pose_bridge.sdformat.values import (
     boolean_from_text,
@@ -55,18 +54,12 @@ from sdf_pose_bridge.sdformat.values import (
 )
 from sdf_pose_bridge.sdformat.xml_tree import (
     attribute_of,
-    child_elements,
     described,
-    first_child,
     text_of,
-    value_at,
-    value_of,
     written_tag,
     XmlElement,
 )
 
-_FRAME_ID_TAGS = ('frame_id', 'gz_frame_id', 'ignition_frame_id')
-"""Elements of a sensor with the frame id of its messages; the first of them counts."""
 _SCOPES = (Kind.WORLD, Kind.MODEL)
 _CHECKS: Mapping[Definition, Callable[[XmlElement, Sources], None]] = {
     definition_of('material', has_frames=True): check_material,
@@ -137,7 +130,8 @@ class ElementReader:
             Kind.FRAME: ('frames', partial(_frame_details, sources=sources)),
             Kind.JOINT: ('joints', partial(
                 joint_details_from_element, sources=sources, reads_dynamics=shapes)),
-            Kind.SENSOR: ('sensors', _sensor_details),
+            Kind.SENSOR: ('sensors', partial(
+                sensor_details_from_element, reads_topics=plugins)),
             Kind.INERTIAL: ('inertials', partial(
                 inertial_from_element, sources=sources, reads_masses=shapes)),
         }
@@ -391,12 +385,3 @@ def _described_value(xml: XmlElement) -> str:
 def _frame_details(xml: XmlElement, sources: Sources) -> FrameDetails:
     return FrameDetails(
         frame_of_attribute(xml, 'attached_to'), sources.origin(xml).placement_frame)
-
-
-def _sensor_details(xml: XmlElement) -> SensorDetails:
-    frame_ids = (value_of(each) for tag in _FRAME_ID_TAGS for each in child_elements(xml, tag))
-    sensor_type = attribute_of(xml, 'type')
-    return SensorDetails(
-        sensor_type, next(filter(None, frame_ids), ''),
-        first_child(xml, 'camera') is not None or sensor_type in CAMERA_TYPES,
-        value_at(xml, 'camera/optical_frame_id'))

@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Make TF frame ids of scoped SDF names.
+Make TF frame ids of scoped SDF names, and names of topics of frame ids.
 
 ``robot::arm::hand`` becomes ``robot/arm/hand``, as ros_gz_bridge writes Gazebo's frame ids. Kinds
 that may share a name with elements of other kinds have the kind before their own name:
@@ -11,12 +11,34 @@ Gazebo stamps a sensor's messages with the frame id that the file sets (``frame_
 version 1.12 ``gz_frame_id``), or with one made of the sensor's name. A camera's optical frame is
 named by ``optical_frame_id``, or like the camera with ``_optical`` appended. Where the frame id of
 a camera is that of a link in the place of the optical frame, it names this frame.
+
+The topic of a frame is named by its id, which may contain any character that XML allows. A level
+of a topic name consists of ASCII letters, digits and underscores and starts with a letter (if it
+starts with an underscore, it is legal but hidden from ``ros2 topic list``). The rule for each
+level between slashes:
+
+* Letters, digits and single underscores stay: ``robot/arm_2/tool`` is its own topic name.
+* A run of other characters becomes ``_x<hex>_``, where ``<hex>`` are the bytes of its UTF-8 text,
+  two lower-case digits each: ``left camera`` becomes ``left_x20_camera``, ``link-1`` becomes
+  ``link_x2d_1``. Underscores beside such a run, and runs of underscores, belong to it:
+  ``a__b`` becomes ``a_x5f5f_b``.
+* At the beginning of a level the escape has no first underscore, and a digit or an underscore
+  there is escaped too: ``3d_map`` becomes ``x33_d_map``.
+* An empty level becomes ``x_``.
+* Text that looks like an escape is escaped at its first character: ``a_x20_b`` becomes
+  ``a_x5f_x20_b``.
+* A name longer than the limit is cut, and ends with ``_xh<hex>_``, 32 digits of the SHA-256 of
+  the frame id.
+
+So two frame ids never have the same name (as surely as SHA-256 for names that were cut), and a
+name depends only on its frame id and the limit.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 import enum
+import re
 from typing import NamedTuple
 
 import numpy as np
@@ -33,6 +55,24 @@ _LABELLED_KINDS = [
 
 _SAME_PLACE_M, _SAME_PLACE_RAD = 1e-3, 2e-3
 """The data of a sensor may be that far from their frame, as files round right angles."""
+
+LONGEST_NAME = 160
+"""Default limit of a name; the rest is for the node's namespace, its name and ``poses``."""
+
+SHORTEST_LIMIT = 48
+"""With a lower limit, a cut name would have no readable part before its hash."""
+
+_ESCAPED = re.compile(r"""
+    \A[0-9_][^A-Za-z0-9]*                             # a digit or underscores at the beginning
+    | _*[^A-Za-z0-9_][^A-Za-z0-9]*                    # others, with the underscores beside them
+    | __+
+    | (?=_?x(?:[0-9a-f]{2})+[^A-Za-z0-9])(?:\Ax|_)    # text that reads as an escape
+    | \Ax_\Z                                          # text that reads as an empty level
+    """, re.VERBOSE)
+"""The runs of characters in a level that are escaped."""
+
+_CUT = re.compile(r'_xh[0-9a-f]{32}_$')
+_CUT_LENGTH = len('_xh_') + 32
 
 
 class FrameNames(enum.Enum):
@@ -139,3 +179,31 @@ def misplacement(pose: Pose, other: Pose) -> float:
     """Return the distance or the angle of two poses; more than 1 is too far for a sensor."""
     distance_m, angle_rad = distance_and_angle(pose, other)
     return max(distance_m / _SAME_PLACE_M, angle_rad / _SAME_PLACE_RAD)
+
+
+def topic_name_from_frame_id(frame_id: str, limit: int = LONGEST_NAME) -> str:
+    """
+    Return the name of a frame's topic by the rule above.
+
+    :param frame_id: any text.
+    :param limit: largest length of the name; at least ``SHORTEST_LIMIT``.
+    :return: a legal relative topic name without hidden levels.
+    """
+    name = '/'.join(_level_from_text(level) for level in frame_id.split('/'))
+    if len(name) <= limit and not _CUT.search(name):
+        return name
+    # Imported here because it is slow to import and rarely needed.
+    import hashlib
+    digest = hashlib.sha256(_bytes_from_text(frame_id)).hexdigest()[:32]
+    return f'{name[:limit - _CUT_LENGTH].rstrip("_/")}_xh{digest}_'
+
+
+def _level_from_text(text: str) -> str:
+    if not text:
+        return 'x_'
+    level = _ESCAPED.sub(lambda run: f'_x{_bytes_from_text(run[0]).hex()}_', text)
+    return level.removeprefix('_')
+
+
+def _bytes_from_text(text: str) -> bytes:
+    return text.encode('utf-8', 'surrogatepass')

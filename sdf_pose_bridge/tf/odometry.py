@@ -14,13 +14,9 @@ from typing import NamedTuple
 from sdf_pose_bridge.geometry.poses import Pose, pose_inverse
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.gazebo_topics import topics_of
 from sdf_pose_bridge.sdformat.poses import EULER_RPY, pose_from_text, PoseTextError
-from sdf_pose_bridge.sdformat.values import boolean_from_text
 from sdf_pose_bridge.tf.joint_motion import JointMotion
-
-_WHEELS = ('AckermannSteering', 'DiffDrive', 'MecanumDrive', 'TrackedVehicle')
-_FRAME_TAGS = {**dict.fromkeys(_WHEELS, 'frame_id'), 'OdometryPublisher': 'odom_frame'}
-"""The parameter of each plugin that names the frame."""
 
 
 class Odometry(NamedTuple):
@@ -45,16 +41,16 @@ def odometry_from_scene(scene: Scene, motion: JointMotion) -> dict[tuple[int, st
         # A spawned model is not where its own file puts it.
         start = scene.pose_of(model) if scene.world_of(model) else Pose()
         for plugin in scene.plugins.get(model, ()):
-            system, parameters = plugin.system, dict(reversed(plugin.parameters))
-            if system not in _FRAME_TAGS or boolean_from_text(
-                    parameters.get('steering_only', '')):
-                continue
-            frame_id = parameters.get(_FRAME_TAGS[system], f'{scene.own_name(model)}/odom')
-            found.setdefault(
-                (dof, frame_id.replace(SEPARATOR, '/')),
-                Odometry(start, Pose(), is_of_wheels=True) if system in _WHEELS else Odometry(
-                    _offset(parameters, 'global_offset'),
-                    pose_inverse(_offset(parameters, 'offset')), is_of_wheels=False))
+            parameters = dict(reversed(plugin.parameters))
+            for topic in topics_of(plugin.system, parameters):
+                if not topic.odometry_frame:
+                    continue
+                frame_id = parameters.get(topic.odometry_frame, f'{scene.own_name(model)}/odom')
+                found.setdefault(
+                    (dof, frame_id.replace(SEPARATOR, '/')),
+                    Odometry(start, Pose(), is_of_wheels=True) if topic.is_of_wheels else Odometry(
+                        _offset(parameters, 'global_offset'),
+                        pose_inverse(_offset(parameters, 'offset')), is_of_wheels=False))
     return found
 
 

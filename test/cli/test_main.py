@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parents[2]
 def test_without_a_command_all_are_listed_with_a_line_each(run_main):
     done = run_main()
     assert (done.returncode, done.stderr) == (0, '')
-    listed = re.findall(r'^    ([a-z]+) +\S.*$', done.stdout, re.MULTILINE)
+    listed = re.findall(r'^    ([a-z_]+) +\S.*$', done.stdout, re.MULTILINE)
     modules = (ROOT / 'sdf_pose_bridge/cli').glob('*.py')
     assert set(listed) == {
         module.stem for module in modules if '\nHELP = ' in module.read_text(encoding='utf-8')}

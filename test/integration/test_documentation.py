@@ -22,6 +22,7 @@ TESTED_ELSEWHERE = {
     'ros2 topic echo': 'test_readme.py compares the message',
     'ros2 service call': 'test_readme.py and test_callers.py make the calls',
     'ros2 param set': 'test_readme.py and test_bridge_changes.py set parameters',
+    'sdf_pose gz_bridge': 'test_gz_bridge.py writes both files, and makes settings of one',
     'sdf_pose diff': 'test_diff.py compares files, also for git',
     'git difftool': 'test_diff.py has git compare two commits',
     'sdf_pose check --format github': 'test_printing.py compares annotations',

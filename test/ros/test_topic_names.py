@@ -20,13 +20,11 @@ from sdf_pose_bridge.ros.parameters import DECLARATIONS, SettingsError
 from sdf_pose_bridge.ros.topic_names import (
     check_number_of_topics,
     LONGEST_FULL_NAME,
-    LONGEST_NAME,
     pose_topics_from_patterns,
-    SHORTEST_LIMIT,
     state_topics_from_settings,
-    topic_name_from_frame_id,
     topics_from_patterns,
 )
+from sdf_pose_bridge.tf.frame_ids import LONGEST_NAME, SHORTEST_LIMIT, topic_name_from_frame_id
 from sdf_pose_bridge.tf.loading import loaded_scene_from_request
 
 NODE = '/sdf_pose_bridge'

@@ -44,8 +44,15 @@ def test_plugins_of_worlds_models_and_sensors_are_read():
     assert plugins_in(scene) == {'world': DRIVE, 'a::l::s': DRIVE, 'a::b': DRIVE * 2}
 
 
-def test_plugins_are_read_on_request_only():
-    assert not load_text(model_file(f'<link name="l"/>{PLUGIN}')).plugins
+def test_plugins_and_topics_of_sensors_are_read_on_request_only():
+    text = model_file(
+        f'<link name="l"><sensor name="s" type="camera"><topic> a </topic><camera><triggered>1'
+        f'</triggered></camera></sensor></link>{PLUGIN}')
+    for requested in (True, False):
+        scene = load_text(text, plugins=requested)
+        assert bool(scene.plugins) is requested
+        assert [each.topics for each in scene.sensors.values()] == [
+            (('topic', 'a'), ('camera/triggered', '1')) if requested else ()]
 
 
 def test_parameters_keep_their_order_and_repetitions():

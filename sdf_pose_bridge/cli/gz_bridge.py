@@ -1,0 +1,96 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""``sdf_pose gz_bridge``: write the configuration of ros_gz_bridge for a file."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from pathlib import Path
+import sys
+
+from sdf_pose_bridge.cli.arguments import add_file_arguments, argument_type
+from sdf_pose_bridge.cli.loading import doubts_about_frames, scene_of
+from sdf_pose_bridge.cli.printing import CommandError, print_problems, write_text
+from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.sdformat.gazebo_topics import GROUPS, ROS_TYPES
+from sdf_pose_bridge.tf.gazebo_bridge import bridged_topics, BridgedTopic, node_parameters
+
+HELP = 'write the configuration of ros_gz_bridge for a world or a robot'
+DESCRIPTION = (
+    'Write the configuration of ros_gz_bridge for the plugins and sensors of a file, or the '
+    'parameters of the node that match it. Topics in ROS are called /<model>/<name>.')
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    add_file_arguments(parser, takes_many=False)
+    parser.add_argument(
+        '-o', dest='output', metavar='PATH', type=Path,
+        help='the file to write, instead of the standard output')
+    parser.add_argument(
+        '--only', metavar='GROUP[,GROUP...]', default=GROUPS, type=argument_type(
+            lambda text: text.split(','), f'has another name than {", ".join(GROUPS)}',
+            set(GROUPS).issuperset),
+        help=f'write only /clock and topics of these groups: {", ".join(GROUPS)}')
+    for name in ('model', 'world'):
+        parser.add_argument(
+            f'--{name}-name', metavar='NAME', default='',
+            help=f'the {name} in Gazebo, for the file of a model that is spawned')
+    parser.add_argument(
+        '--node', action='store_true',
+        help='write the parameters with which the node follows these topics')
+
+
+def run(options: argparse.Namespace) -> int:
+    """Write the configuration, or the parameters of the node; return 0."""
+    path, world = options.files[0], options.world_name
+    scene = scene_of(path, options, plugins=True)
+    if scene.world_names and (options.model_name or world):
+        msg = (f'{path} has a world; --model-name and --world-name are for the file of a model '
+               'that is spawned')
+        raise CommandError(msg)
+    scene = scene.with_model_name(options.model_name)
+    topics = bridged_topics(scene, options.only, world)
+    doubts = (SdfWarning('WARNING', each.doubt, scene.place(each.element))
+              for each in topics if each.doubt)
+    print_problems((), (*doubts_about_frames(scene), *doubts), sys.stderr)
+    if options.node:
+        parameters = {
+            'sdf_file': str(Path(path).absolute()),
+            'resource_paths': [str(Path(each).absolute()) for each in options.resource_paths],
+            'on_missing_include': 'skip' if options.skip_missing else '',
+            **node_parameters(topics, scene, world)}
+        lines = ['/**:', '  ros__parameters:', *(
+            f'    {name}: {_yaml_from_value(value)}' for name, value in parameters.items()
+            if value)]
+    else:
+        lines = [line for each in topics for line in _lines(each)]
+    write_text('\n'.join(lines) + '\n', options.output)
+    return 0
+
+
+def _lines(bridged: BridgedTopic) -> Iterator[str]:
+    topic = bridged.topic
+    if topic.reason:
+        yield f'# {printable(bridged.gz_name)} of gz.msgs.{topic.gz_type}: {topic.reason}'
+        return
+    if bridged.doubt:
+        yield f'# {printable(bridged.doubt)}'
+    yield f'- ros_topic_name: {_yaml_from_value(bridged.ros_name)}'
+    yield f'  gz_topic_name: {_yaml_from_value(bridged.gz_name)}'
+    yield f'  ros_type_name: {ROS_TYPES[topic.gz_type]}'
+    yield f'  gz_type_name: gz.msgs.{topic.gz_type}'
+    yield f'  direction: {"ROS_TO_GZ" if topic.is_command else "GZ_TO_ROS"}'
+    yield f'  lazy: {_yaml_from_value(topic.group == "sensors")}'
+
+
+def _yaml_from_value(value: object) -> str:
+    if isinstance(value, list):
+        return f'[{", ".join(map(_yaml_from_value, value))}]'
+    if isinstance(value, bool):
+        return str(value).lower()
+    # YAML has the escapes of Python in double quotes.
+    escaped = str(value).encode('unicode_escape').decode().replace('"', '\\"')
+    return f'"{escaped}"'

@@ -1,0 +1,114 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""``sdf_pose gz_bridge``: both files that it writes, and what is wrong."""
+
+import pytest
+from sdf_texts import joint, model_file, world_file
+
+SENSORS = ('<sensor name="s" type="imu"><gz_frame_id>imu</gz_frame_id></sensor>'
+           '<sensor name="l" type="lidar"/>')
+CONTENT = (
+    f'<link name="l">{SENSORS}</link><link name="k"/>'
+    + joint('<parent>l</parent><child>k</child>', joint_type='revolute') + ''.join(
+        f'<plugin filename="f" name="gz::sim::systems::{system}"/>'
+        for system in ('JointStatePublisher', 'DiffDrive')))
+ODD = 'a "b": #1 \u2028é'
+
+
+@pytest.fixture(autouse=True)
+def write_files(files):
+    """The folder has a robot, and a world with two of it."""
+    (files / 'robot.sdf').write_text(model_file(CONTENT))
+    (files / 'two.sdf').write_text(world_file(''.join(
+        f'<model name="{name}">{CONTENT}</model>' for name in 'ab')))
+    odd = ODD.replace('"', '&quot;')
+    (files / 'odd.sdf').write_text(world_file(f'<model name="{odd}">{CONTENT}</model>'))
+
+
+@pytest.fixture
+def parsed(run_main):
+    """Run the command, and return the object in its output."""
+    yaml = pytest.importorskip('yaml', reason='needs PyYAML')
+
+    def run(*arguments):
+        result = run_main('gz_bridge', *arguments)
+        assert result.returncode == 0, result.stderr
+        return yaml.safe_load(result.stdout)
+    return run
+
+
+@pytest.mark.parametrize(('arguments', 'code', 'reason'), [
+    (['none.sdf'], 1, 'FILE_READ'),
+    (['robot.sdf'], 1, 'robot.sdf:1: ELEMENT_MISSING: the joint_states of model "m" is on'),
+    (['two.sdf', '--world-name', 'w'], 1, 'two.sdf has a world; --model-name and --world-name'),
+    (['two.sdf', '--only', 'joint'], 2, '"joint" has another name than joints, poses, odometry'),
+    (['two.sdf', '-o', 'none/a.yaml'], 1, 'cannot write none/a.yaml'),
+])
+def test_wrong_input_gives_one_error(run_main, arguments, code, reason):
+    result = run_main('gz_bridge', *arguments)
+    assert result.returncode == code
+    assert reason in result.stderr
+    assert result.stdout == ''
+
+
+def test_entries_have_the_keys_of_ros_gz_bridge(parsed):
+    entries = parsed('two.sdf', '--only', 'joints,commands')
+    assert entries[0] == {
+        'ros_topic_name': '/clock', 'gz_topic_name': '/clock',
+        'ros_type_name': 'rosgraph_msgs/msg/Clock', 'gz_type_name': 'gz.msgs.Clock',
+        'direction': 'GZ_TO_ROS', 'lazy': False}
+    assert [(each['ros_topic_name'], each['direction']) for each in entries[1:]] == [
+        (f'/{name}/{topic}', direction) for name in 'ab' for topic, direction in (
+            ('joint_states', 'GZ_TO_ROS'), ('cmd_vel', 'ROS_TO_GZ'), ('enable', 'ROS_TO_GZ'))]
+
+
+def test_only_sensors_are_lazy(parsed):
+    assert {each['gz_type_name'] for each in parsed('two.sdf') if each['lazy']} == {'gz.msgs.IMU'}
+
+
+def test_a_topic_that_cannot_be_bridged_has_a_comment_with_the_reason(run_main):
+    assert ('# /world/w/model/a/link/l/sensor/l/scan of gz.msgs.LaserScan: Gazebo sends nothing'
+            in run_main('gz_bridge', 'two.sdf').stdout)
+
+
+def test_robots_with_one_frame_id_are_told(run_main):
+    assert ('sensor "b::l::s" and sensor "a::l::s" (line 1) would share the frame id "imu"'
+            in run_main('gz_bridge', 'two.sdf').stderr)
+
+
+def test_any_name_is_quoted(parsed):
+    assert parsed('odd.sdf', '--only', 'odometry')[1]['gz_topic_name'] == (
+        f'/model/{ODD.replace(" ", "_")}/odometry')
+    assert parsed('robot.sdf', '--world-name', ODD, '--model-name', ODD, '--node')['/**'][
+        'ros__parameters']['model_name'] == ODD
+
+
+def test_output_is_written_to_a_file(run_main, files):
+    printed = run_main('gz_bridge', 'two.sdf').stdout
+    assert run_main('gz_bridge', 'two.sdf', '-o', 'a.yaml').stdout == ''
+    assert (files / 'a.yaml').read_text() == printed
+
+
+@pytest.mark.parametrize(('arguments', 'models'), [
+    (['two.sdf'], ['a', 'b']),
+    (['odd.sdf'], [ODD]),
+    (['robot.sdf', '--world-name', 'w', '--model-name', 'm-1', '--skip-missing', '-I', '.'],
+     ['m-1']),
+])
+def test_the_node_follows_the_topics_that_are_bridged(parsed, files, arguments, models):
+    pytest.importorskip('rclpy', reason='needs ROS 2')
+    from sdf_pose_bridge.ros.given_parameters import settings_from_values
+    from sdf_pose_bridge.ros.topic_names import state_topics_from_settings
+    from sdf_pose_bridge.tf.loading import loaded_scene_from_request
+    parameters = parsed(*arguments, '--node')['/**']['ros__parameters']
+    assert parameters['sdf_file'] == str(files / arguments[0])
+    assert parameters.pop('use_sim_time') is True
+    settings = settings_from_values(
+        {**parameters, 'kinds': ['link'], 'publish_frequency': 1.0})
+    loaded = loaded_scene_from_request(settings.load_request)
+    topics = state_topics_from_settings(
+        settings, loaded.tree.world, loaded.joint_positions, lambda name: name)
+    bridged = {each['ros_topic_name'] for each in parsed(*arguments)}
+    assert topics.warnings == ()
+    assert [*topics.joint_states.values()] == [*topics.model_poses.values()] == models
+    assert {*topics.joint_states, *topics.model_poses} <= bridged

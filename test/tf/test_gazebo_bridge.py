@@ -1,0 +1,149 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Topics of a file in Gazebo and in ROS, and the parameters of the node for them."""
+
+import pytest
+from sdf_texts import model_file, world_file
+
+from sdf_pose_bridge import load_text, SdfError
+from sdf_pose_bridge.sdformat.gazebo_topics import GROUPS, ROS_TYPES
+from sdf_pose_bridge.tf.gazebo_bridge import bridged_topics, node_parameters
+
+IMU = '<sensor name="s" type="imu">{}</sensor>'
+JOINTS = '<plugin filename="gz-sim-joint-state-publisher-system" name=""/>'
+
+
+def plugin(system, parameters=''):
+    return f'<plugin filename="f" name="gz::sim::systems::{system}">{parameters}</plugin>'
+
+
+def model(name, content):
+    return f'<model name="{name}"><link name="l"/>{content}</model>'
+
+
+def topics_in(text, groups=GROUPS, world='', name=''):
+    scene = load_text(text, plugins=True).with_model_name(name)
+    topics = bridged_topics(scene, groups, world)
+    return topics, node_parameters(topics, scene, world)
+
+
+def names_in(text, *arguments):
+    """Return the names in Gazebo by those in ROS, without the clock."""
+    (clock, *topics), _ = topics_in(text, *arguments)
+    assert clock.ros_name == clock.gz_name == '/clock'
+    return {each.ros_name: each.gz_name for each in topics}
+
+
+def parameters_of(text, *arguments):
+    """Return the topics of joint states and poses, and the frames of poses."""
+    _, parameters = topics_in(text, *arguments)
+    return [parameters[name] for name in (
+        'joint_states_topics', 'model_pose_topics', 'model_pose_frames')]
+
+
+@pytest.mark.parametrize(('content', 'owner'), [
+    (JOINTS, 'the joint_states of model "m"'),
+    (f'<link name="k">{IMU.format("")}</link>', 'the imu of sensor "m::k::s"'),
+])
+def test_without_the_name_of_the_world_one_error_says_so(content, owner):
+    text = model_file(f'<link name="l"/>\n{content}')
+    with pytest.raises(SdfError, match=owner) as error:
+        topics_in(text)
+    assert '--world-name' in error.value.message
+    assert error.value.line > 0
+    assert names_in(text, ('odometry',)) == {}
+    assert topics_in(text, GROUPS, 'w')
+
+
+def test_a_model_file_needs_no_world_for_topics_without_it():
+    text = model_file(f'<link name="l">{IMU.format("<topic>imu</topic>")}</link>')
+    assert names_in(text) == {'/m/l/s/imu': '/imu'}
+
+
+def test_plugins_of_nobody_never_hurt():
+    text = world_file(
+        f'{plugin("DiffDrive")}{plugin("Unknown")}<plugin filename="any.so"/>'
+        f'{plugin("Imu")}{model("a", plugin("Unknown") + plugin("Contact"))}')
+    assert names_in(text) == {}
+
+
+def test_robots_do_not_meet():
+    content = plugin('DiffDrive') + JOINTS + f'<link name="k">{IMU.format("")}</link>'
+    robots = range(30)
+    text = world_file(''.join(model(f'r{i}', content) for i in robots))
+    names = names_in(text)
+    assert len(names) == len(set(names.values())) == 30 * 5
+    assert names['/r7/joint_states'] == '/world/w/model/r7/joint_state'
+    assert names['/r7/k/s/imu'] == '/world/w/model/r7/link/k/sensor/s/imu'
+    assert parameters_of(text) == [['/{model}/joint_states'], ['/{model}/odometry'], []]
+
+
+def test_a_topic_of_several_robots_keeps_its_name_and_is_told():
+    text = world_file(''.join(
+        model(name, f'<link name="k">{IMU.format("<topic>i</topic>")}</link>') for name in 'ab'))
+    (_, topic), _ = topics_in(text)
+    assert (topic.ros_name, topic.gz_name) == ('/i', '/i')
+    assert 'the topic /i belongs to "a::k::s", "b::k::s"' in topic.doubt
+
+
+def test_names_that_ros_forbids_are_escaped_as_by_the_node():
+    text = world_file(model('my robot-1', model('2', plugin('DiffDrive') + JOINTS) + JOINTS))
+    assert names_in(text, ('joints',)) == {
+        '/my_x20_robot_x2d_1/joint_states': '/world/w/model/my_robot-1/joint_state',
+        '/my_x20_robot_x2d_1/x32_/joint_states': '/world/w/model/my_robot-1/model/2/joint_state'}
+    assert parameters_of(text) == [
+        ['/{model}/joint_states', '/{model}/x32_/joint_states'], ['/{model}/odometry'], []]
+
+
+def test_plugins_of_one_class_in_one_model():
+    text = world_file(model('a', ''.join(
+        plugin('JointTrajectoryController', f'<topic>{topic}</topic>') for topic in 'xyy')))
+    assert names_in(text) == {'/a/joint_trajectory': '/x', '/a/joint_trajectory_1': '/y'}
+
+
+@pytest.mark.parametrize(('contents', 'poses'), [
+    ({'a': 'OdometryPublisher'}, ['/{model}/odometry']),
+    ({'a': 'DiffDrive OdometryPublisher'}, ['/{model}/odometry_1']),
+    ({'a': 'DiffDrive OdometryPublisher', 'b': 'DiffDrive'},
+     ['/b/odometry', '/{model}/odometry_1']),
+    ({'a': 'DiffDrive PosePublisher'}, ['/{model}/odometry']),
+    ({'a': 'DiffDrive PosePublisher publish_model_pose'}, ['/{model}/pose']),
+    ({'a': 'PosePublisher publish_nested_model_pose use_pose_vector_msg'}, ['/{model}/pose']),
+    ({'a': 'PosePublisher publish_model_pose static_publisher'}, ['/{model}/pose_static']),
+    ({'a': 'AckermannSteering steering_only'}, []),
+])
+def test_the_node_follows_the_best_source_of_each_model(contents, poses):
+    def plugins(name, words):
+        flags = ''.join(f'<{each}>true</{each}>' for each in words.split() if each.islower())
+        return ''.join(
+            plugin(each, f'{flags}<odom_topic>{each}{name}</odom_topic>')
+            for each in words.split() if not each.islower())
+    text = world_file(''.join(model(each[0], plugins(*each)) for each in contents.items()))
+    assert parameters_of(text)[1] == poses
+
+
+def test_a_spawned_model():
+    text = model_file('<link name="l"/>' + plugin(
+        'PosePublisher', '<publish_model_pose>true</publish_model_pose>') + JOINTS)
+    assert names_in(text, GROUPS, 'shop', 'm_2') == {
+        '/m_2/pose': '/model/m_2/pose', '/m_2/joint_states': '/world/shop/model/m_2/joint_state'}
+    assert parameters_of(text, GROUPS, 'shop', 'm_2') == [
+        ['/{model}/joint_states'], ['/{model}/pose'], ['shop']]
+    assert topics_in(text, GROUPS, 'shop', 'm_2')[1]['model_name'] == 'm_2'
+
+
+def test_only_the_first_world_counts():
+    text = '<sdf version="1.10">' + ''.join(
+        f'<world name="{world}">{model("a", JOINTS)}</world>' for world in 'vw') + '</sdf>'
+    assert names_in(text) == {'/a/joint_states': '/world/v/model/a/joint_state'}
+
+
+def test_each_bridged_topic_has_a_type_in_ros():
+    sensors = ''.join(
+        f'<sensor name="{each}" type="{each}"/>' for each in (
+            'camera', 'depth', 'rgbd_camera', 'segmentation', 'boundingbox_camera', 'thermal',
+            'gpu_lidar', 'imu', 'navsat', 'altimeter', 'air_pressure', 'magnetometer',
+            'force_torque', 'contact', 'lidar', 'logical_camera', 'air_speed'))
+    topics, _ = topics_in(world_file(model('a', f'<link name="k">{sensors}</link>')))
+    assert {each.topic.gz_type for each in topics if not each.topic.reason} <= ROS_TYPES.keys()
+    assert len(topics) > 20
