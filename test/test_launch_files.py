@@ -21,6 +21,7 @@ from launch.launch_description_sources import (
 from launch.substitutions.substitution_failure import SubstitutionFailure
 from launch.utilities import perform_substitutions
 from launch_ros.actions import Node
+from sdf_texts import world_file
 import yaml
 
 FOLDER = Path(__file__).resolve().parents[1] / 'launch'
@@ -59,10 +60,11 @@ def parameters_of_nodes(name, **arguments):
     """Return the parameters that each node of a file would get, by executable."""
     found = {}
     for executable, node in nodes_of(name, **arguments)[0].items():
-        (file, is_file), = node._Node__expanded_parameter_arguments
-        assert is_file
-        entries, = yaml.safe_load(Path(file).read_text(encoding='utf-8')).values()
-        found[executable] = entries['ros__parameters']
+        found[executable] = {}
+        for file, is_file in node._Node__expanded_parameter_arguments:
+            assert is_file
+            entries, = yaml.safe_load(Path(file).read_text(encoding='utf-8')).values()
+            found[executable].update(entries['ros__parameters'])
     return found
 
 
@@ -77,9 +79,13 @@ def command(folder, monkeypatch, name, text):
 @pytest.fixture
 def rviz_installed(tmp_path, monkeypatch):
     """Make the ament index list rviz2, which needs a display and is not on most machines."""
+    installed('rviz2', tmp_path, monkeypatch)
+
+
+def installed(package, tmp_path, monkeypatch):
     index = tmp_path / 'share/ament_index/resource_index/packages'
     index.mkdir(parents=True)
-    (index / 'rviz2').touch()
+    (index / package).touch()
     monkeypatch.setenv('AMENT_PREFIX_PATH', f'{tmp_path}:{os.environ["AMENT_PREFIX_PATH"]}')
 
 
@@ -95,7 +101,7 @@ def rviz_of(name, **arguments):
 def test_these_are_the_launch_files():
     assert FILES == [
         'beside_robot_state_publisher.launch.py', 'bridge.launch.py', 'bridge.launch.xml',
-        'two_robots.launch.py']
+        'gazebo.launch.py', 'two_robots.launch.py']
 
 
 @pytest.mark.parametrize('name', FILES)
@@ -221,3 +227,31 @@ def test_beside_robot_state_publisher_the_two_publish_different_frames(tmp_path)
             'sdf_file': 'cell.sdf', 'root_frame': 'world', 'frame_prefix': 'cell/', 'model': '',
             'anchor_models': 'all', 'publish_robot_description': False},
     }
+
+
+def test_without_ros_gz_bridge_the_package_to_install_is_named(monkeypatch):
+    monkeypatch.setenv('AMENT_PREFIX_PATH', '/nonexistent')
+    with pytest.raises(RuntimeError, match='ros_gz_bridge, which is not installed: sudo apt'):
+        nodes_of('gazebo.launch.py', sdf_file='a.sdf')
+
+
+def test_the_bridge_of_gazebo_and_the_node_get_files_that_match(tmp_path, monkeypatch):
+    installed('ros_gz_bridge', tmp_path, monkeypatch)
+    world = tmp_path / 'w.sdf'
+    world.write_text(world_file('<model name="a"><link name="l"/><plugin filename='
+                                '"gz-sim-diff-drive-system" name=""/></model>'), encoding='utf-8')
+    nodes = parameters_of_nodes('gazebo.launch.py', sdf_file=str(world))
+    entries = yaml.safe_load(Path(nodes['parameter_bridge']['config_file']).read_text())
+    assert '/a/odometry' in [each['ros_topic_name'] for each in entries]
+    assert nodes['bridge'] == {
+        'sdf_file': str(world), 'use_sim_time': True, 'model_pose_topics': ['/{model}/odometry']}
+
+
+@pytest.mark.parametrize(('arguments', 'reason'), [
+    ({}, 'FILE_READ'), ({'gazebo': 'true'}, 'needs the program gz')])
+def test_an_error_of_the_file_or_a_missing_gazebo_is_reported(
+        arguments, reason, tmp_path, monkeypatch):
+    installed('ros_gz_bridge', tmp_path, monkeypatch)
+    monkeypatch.setenv('PATH', str(tmp_path))
+    with pytest.raises(RuntimeError, match=reason):
+        nodes_of('gazebo.launch.py', sdf_file='none.sdf', **arguments)

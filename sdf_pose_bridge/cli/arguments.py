@@ -73,11 +73,11 @@ def add_format_argument(parser: argparse.ArgumentParser, *formats: str) -> None:
 def add_output_argument(
     parser: argparse.ArgumentParser, formats: Sequence[str], what: str,
 ) -> None:
-    """Add the argument ``-o``, a path whose ending, such as ``.svg``, gives the format."""
+    """Add the argument ``-o``, a path whose ending, such as ``.svg``, is one of some or any."""
     parser.add_argument(
         '-o', dest='output', metavar='PATH', help=f'where to write {what}', type=argument_type(
             Path, f'must end with one of {", ".join(formats)}',
-            lambda path: path.suffix.lower() in formats))
+            lambda path: not formats or path.suffix.lower() in formats))
 
 
 def add_file_arguments(parser: argparse.ArgumentParser, *, takes_many: bool = True) -> None:

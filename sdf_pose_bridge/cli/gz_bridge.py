@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 import sys
 
-from sdf_pose_bridge.cli.arguments import add_file_arguments, argument_type
+from sdf_pose_bridge.cli.arguments import add_file_arguments, add_output_argument, argument_type
 from sdf_pose_bridge.cli.loading import doubts_about_frames, scene_of
 from sdf_pose_bridge.cli.printing import CommandError, print_problems, write_text
 from sdf_pose_bridge.errors import SdfWarning
@@ -17,7 +17,7 @@ from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.sdformat.gazebo_topics import GROUPS, ROS_TYPES
 from sdf_pose_bridge.tf.gazebo_bridge import bridged_topics, BridgedTopic, node_parameters
 
-HELP = 'write the configuration of ros_gz_bridge for a world or a robot'
+HELP = 'write the configuration of ros_gz_bridge for a file'
 DESCRIPTION = (
     'Write the configuration of ros_gz_bridge for the plugins and sensors of a file, or the '
     'parameters of the node that match it. Topics in ROS are called /<model>/<name>.')
@@ -26,9 +26,7 @@ DESCRIPTION = (
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add_file_arguments(parser, takes_many=False)
-    parser.add_argument(
-        '-o', dest='output', metavar='PATH', type=Path,
-        help='the file to write, instead of the standard output')
+    add_output_argument(parser, (), 'the configuration, instead of the standard output')
     parser.add_argument(
         '--only', metavar='GROUP[,GROUP...]', default=GROUPS, type=argument_type(
             lambda text: text.split(','), f'has another name than {", ".join(GROUPS)}',
@@ -82,7 +80,7 @@ def _lines(bridged: BridgedTopic) -> Iterator[str]:
     yield f'  gz_topic_name: {_yaml_from_value(bridged.gz_name)}'
     yield f'  ros_type_name: {ROS_TYPES[topic.gz_type]}'
     yield f'  gz_type_name: gz.msgs.{topic.gz_type}'
-    yield f'  direction: {"ROS_TO_GZ" if topic.is_command else "GZ_TO_ROS"}'
+    yield f'  direction: {"ROS_TO_GZ" if topic.group == "commands" else "GZ_TO_ROS"}'
     yield f'  lazy: {_yaml_from_value(topic.group == "sensors")}'
 
 

@@ -5,10 +5,14 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 import sys
 
-from sdf_pose_bridge.cli.arguments import add_file_arguments, add_frame_arguments, argument_type
+from sdf_pose_bridge.cli.arguments import (
+    add_file_arguments,
+    add_frame_arguments,
+    add_output_argument,
+    argument_type,
+)
 from sdf_pose_bridge.cli.loading import scene_of
 from sdf_pose_bridge.cli.printing import print_problems, write_text
 from sdf_pose_bridge.tf.urdf_text import urdf_from_scene
@@ -24,9 +28,7 @@ DESCRIPTION = (
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add_file_arguments(parser, takes_many=False)
-    parser.add_argument(
-        '-o', dest='output', metavar='PATH', type=Path,
-        help='the file to write, instead of the standard output')
+    add_output_argument(parser, (), 'the URDF, instead of the standard output')
     add_frame_arguments(parser, 'make links of', 'write')
     parser.add_argument(
         '--frame-separator', metavar='TEXT', default='/', type=argument_type(

@@ -138,11 +138,6 @@ class GazeboTopic(NamedTuple):
         """Whether odometry is zero where the model was spawned; others are poses in the world."""
         return self.odometry_frame == 'frame_id'
 
-    @property
-    def is_command(self) -> bool:
-        """Whether it goes to Gazebo."""
-        return self.group == 'commands'
-
     def name(self, values: Mapping[str, str]) -> str:
         """Return its name in Gazebo; empty if it needs a value that is missing."""
         for name in self.names:

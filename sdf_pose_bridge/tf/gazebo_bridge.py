@@ -48,12 +48,12 @@ def bridged_topics(scene: Scene, groups: Collection[str], world: str = '') -> li
     :raises ElementMissingError: if a topic begins with the name of the world, and there is none.
     """
     found = defaultdict[
-        tuple[str, str, bool], dict[int, tuple[GazeboTopic, Mapping[str, str]]]](dict)
+        tuple[str, str, str], dict[int, tuple[GazeboTopic, Mapping[str, str]]]](dict)
     for element, topic, values in _topics(scene, world):
         if topic.group not in ('clock', *groups):
             pass
         elif name := topic.name(values):
-            found[name, topic.gz_type, topic.is_command].setdefault(element, (topic, values))
+            found[name, topic.gz_type, topic.group].setdefault(element, (topic, values))
         elif 'W' not in values and '{W}' in topic.names[-1]:
             kind = Kind(scene.kinds[element]).label
             msg = (f'the {topic.ros_name} of {kind} "{scene.names[element]}" is on a topic of the '
