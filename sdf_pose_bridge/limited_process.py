@@ -181,18 +181,19 @@ class Call(Generic[_Result]):
                     # It has raised its own limit if it has read much.
                     soft, _ = resource.prlimit(self._pid, resource.RLIMIT_CPU)
                     longest_s = max(longest_s, soft + WAITING_S)
-            now = time.monotonic()
-            if now >= self._begin + longest_s:
-                # The kernel would have ended it if it had used all of its processor time.
-                msg = (f'the process that reads files has not answered in {longest_s:.0f} s, of '
-                       f'which it used {_processor_s(self._pid):.1f} s of the processor: it was '
-                       'stopped, or waits for a disk or for other processes')
-                raise ProcessEndedError(msg, is_temporary=True)
-            self._status.settimeout(max(min(ends_at, self._begin + longest_s) - now, 1e-6))
+            last = self._begin + longest_s
+            self._status.settimeout(max(min(ends_at, last) - time.monotonic(), 1e-6))
             try:
                 message = self._status.recv(_STATUS.size)
             except TimeoutError:
-                if time.monotonic() >= ends_at:
+                now = time.monotonic()
+                if now >= last:
+                    # The kernel would have ended it if it had used all of its processor time.
+                    msg = (f'the process that reads files has not answered in {longest_s:.0f} s, '
+                           f'of which it used {_processor_s(self._pid):.1f} s of the processor: '
+                           'it was stopped, or waits for a disk or for other processes')
+                    raise ProcessEndedError(msg, is_temporary=True) from None
+                if now >= ends_at:
                     return False
                 continue
             if not message:

@@ -15,6 +15,7 @@ import termios
 from types import SimpleNamespace
 
 from command_line import COMMAND, ENVIRONMENT
+from deadline import DEADLINE_S
 import pytest
 
 from sdf_pose_bridge.cli.main import main, new_parser
@@ -53,7 +54,7 @@ def sdf_pose_in_shell(files):
     def run(command, before='', **environment):
         return subprocess.run(
             f'{before} {shlex.join(map(str, COMMAND))} {command}', shell=True, cwd=files,
-            env={**ENVIRONMENT, **environment}, capture_output=True, text=True, timeout=60,
+            env={**ENVIRONMENT, **environment}, capture_output=True, text=True, timeout=DEADLINE_S,
             check=False)
     return run
 
@@ -73,7 +74,7 @@ def on_terminal(files):
             with contextlib.suppress(OSError):
                 while part := output.read1():
                     text += part
-            process.wait(timeout=60)
+            process.wait(timeout=DEADLINE_S)
         return text.decode().replace('\r\n', '\n')
     return run
 

@@ -8,6 +8,7 @@ import select
 import subprocess
 
 from command_line import COMMAND, ENVIRONMENT
+from deadline import DEADLINE_S
 import pytest
 
 from sdf_pose_bridge import SdfError
@@ -34,7 +35,7 @@ def test_a_long_load_is_told_on_a_terminal(files):
         os.close(writer)
         assert select.select([terminal], [], [], 60)[0]
         assert terminal.read1() == b'reading - ...\r\n'
-        process.communicate((files / 'good.sdf').read_bytes(), timeout=60)
+        process.communicate((files / 'good.sdf').read_bytes(), timeout=DEADLINE_S)
     assert process.returncode == 0
 
 

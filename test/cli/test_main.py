@@ -9,6 +9,7 @@ import sys
 import xml.etree.ElementTree as ET
 
 from command_line import COMMAND, ENVIRONMENT
+from deadline import DEADLINE_S
 import pytest
 from sdf_texts import model_file
 
@@ -36,7 +37,7 @@ def test_the_shell_completes_commands(files):
     environment = {
         **ENVIRONMENT, '_ARGCOMPLETE': '1', '_ARGCOMPLETE_STDOUT_FILENAME': str(files / 'answer'),
         'COMP_LINE': line, 'COMP_POINT': str(len(line))}
-    subprocess.run(COMMAND, env=environment, cwd=files, check=True, timeout=60)
+    subprocess.run(COMMAND, env=environment, cwd=files, check=True, timeout=DEADLINE_S)
     assert (files / 'answer').read_text().split() == ['check']
 
 
@@ -72,7 +73,7 @@ def test_a_file_that_needs_too_much_is_one_sentence(files, limit, message):
         f'<link name="l{i}"/>' for i in range(200_000))), encoding='utf-8')
     done = subprocess.run(
         [sys.executable, '-c', LIMITED.format(limit), 'tree', 'large.sdf'], cwd=files,
-        env=ENVIRONMENT, capture_output=True, text=True, timeout=60, check=False)
+        env=ENVIRONMENT, capture_output=True, text=True, timeout=DEADLINE_S, check=False)
     assert done.returncode == 1
     assert re.fullmatch(f'{message}\n', done.stderr)
 

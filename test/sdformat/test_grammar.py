@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 
+from deadline import DEADLINE_S
 import pytest
 from sdf_texts import element, LINK, LINK_CHILDREN, link_with, model_file, names_of, world_file
 
@@ -206,8 +207,8 @@ print(json.dumps({
 def python_with_beam(folder, *arguments):
     """Run Python where the package is the copy in a folder that knows beams."""
     done = subprocess.run(
-        [sys.executable, *arguments], cwd=folder, capture_output=True, text=True, timeout=60,
-        env={**os.environ, 'PYTHONPATH': str(folder)}, check=False)
+        [sys.executable, *arguments], cwd=folder, capture_output=True, text=True, check=False,
+        env={**os.environ, 'PYTHONPATH': str(folder)}, timeout=DEADLINE_S)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
 
