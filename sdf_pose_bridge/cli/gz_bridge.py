@@ -8,12 +8,15 @@ import argparse
 from collections.abc import Iterator
 from pathlib import Path
 import sys
+from xml.sax.saxutils import escape, quoteattr
 
 from sdf_pose_bridge.cli.arguments import add_file_arguments, add_output_argument, argument_type
 from sdf_pose_bridge.cli.loading import doubts_about_frames, scene_of
 from sdf_pose_bridge.cli.printing import CommandError, print_problems, write_text
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.scene.loading import load_text
+from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.gazebo_topics import GROUPS, ROS_TYPES
 from sdf_pose_bridge.tf.gazebo_bridge import bridged_topics, BridgedTopic, node_parameters
 
@@ -50,7 +53,7 @@ def run(options: argparse.Namespace) -> int:
                'that is spawned')
         raise CommandError(msg)
     scene = scene.with_model_name(options.model_name)
-    topics = bridged_topics(scene, options.only, world)
+    topics = bridged_topics(_scene_of_gazebo(scene, options), options.only, world)
     doubts = (SdfWarning('WARNING', each.doubt, scene.place(each.element))
               for each in topics if each.doubt)
     print_problems((), (*doubts_about_frames(scene), *doubts), sys.stderr)
@@ -67,6 +70,15 @@ def run(options: argparse.Namespace) -> int:
         lines = [line for each in topics for line in _lines(each)]
     write_text('\n'.join(lines) + '\n', options.output)
     return 0
+
+
+def _scene_of_gazebo(scene: Scene, options: argparse.Namespace) -> Scene:
+    """Return a robot of URDF as Gazebo has it: with the sensors of links that it lumps."""
+    if scene.urdf_root is None or not Path(scene.path).is_file():
+        return scene
+    text = (f'<sdf version="1.12"><model name={quoteattr(scene.names[1])}><include merge="true">'
+            f'<uri>{escape(str(Path(scene.path).absolute()))}</uri></include></model></sdf>')
+    return load_text(text, resource_paths=options.resource_paths, plugins=True)
 
 
 def _lines(bridged: BridgedTopic) -> Iterator[str]:

@@ -71,6 +71,17 @@ def test_a_topic_that_cannot_be_bridged_has_a_comment_with_the_reason(run_main):
             in run_main('gz_bridge', 'two.sdf').stdout)
 
 
+def test_sensors_of_urdf_are_in_the_links_that_gazebo_keeps(parsed, files):
+    mass = ('<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
+            '</inertial>')
+    (files / 'robot.urdf').write_text(
+        f'<robot name="r"><link name="a">{mass}</link><link name="b">{mass}</link>'
+        '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
+        '<gazebo reference="b"><sensor name="s" type="imu"/></gazebo></robot>')
+    _, imu = parsed('robot.urdf', '--world-name', 'w')
+    assert imu['gz_topic_name'] == '/world/w/model/r/link/a/sensor/s/imu'
+
+
 def test_robots_with_one_frame_id_are_told(run_main):
     assert ('sensor "b::l::s" and sensor "a::l::s" (line 1) would share the frame id "imu"'
             in run_main('gz_bridge', 'two.sdf').stderr)
