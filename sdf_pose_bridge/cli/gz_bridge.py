@@ -11,7 +11,7 @@ import sys
 from xml.sax.saxutils import escape, quoteattr
 
 from sdf_pose_bridge.cli.arguments import add_file_arguments, add_output_argument, argument_type
-from sdf_pose_bridge.cli.loading import doubts_about_frames, scene_of
+from sdf_pose_bridge.cli.loading import doubts_about_frames, scene_of, STANDARD_INPUT
 from sdf_pose_bridge.cli.printing import CommandError, print_problems, write_text
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.names import printable
@@ -59,7 +59,7 @@ def run(options: argparse.Namespace) -> int:
     print_problems((), (*doubts_about_frames(scene), *doubts), sys.stderr)
     if options.node:
         parameters = {
-            'sdf_file': str(Path(path).absolute()),
+            'sdf_file': '' if path == STANDARD_INPUT else str(Path(path).absolute()),
             'resource_paths': [str(Path(each).absolute()) for each in options.resource_paths],
             'on_missing_include': 'skip' if options.skip_missing else '',
             **node_parameters(topics, scene, world)}

@@ -94,6 +94,11 @@ def test_any_name_is_quoted(parsed):
         'ros__parameters']['model_name'] == ODD
 
 
+def test_the_standard_input_is_no_file_of_the_node(run_main):
+    result = run_main('gz_bridge', '-', '--node', stdin='two.sdf')
+    assert result.stdout.startswith('/**:\n  ros__parameters:\n    use_sim_time: true\n')
+
+
 def test_output_is_written_to_a_file(run_main, files):
     printed = run_main('gz_bridge', 'two.sdf').stdout
     assert run_main('gz_bridge', 'two.sdf', '-o', 'a.yaml').stdout == ''
