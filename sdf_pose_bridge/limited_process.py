@@ -236,10 +236,10 @@ class Call(Generic[_Result]):
         try:
             # Other threads can run after each piece.
             result, exception, text = pickle.load(self._file)
+            if isinstance(exception, MemoryError):
+                raise exception
         except MemoryError:
             raise ProcessEndedError(_NO_MEMORY, is_temporary=True) from None
-        if isinstance(exception, MemoryError):
-            raise ProcessEndedError(_NO_MEMORY, is_temporary=True)
         if exception is not None:
             raise exception from RuntimeError(f'in another process:\n{text}')
         return result  # type: ignore[no-any-return]

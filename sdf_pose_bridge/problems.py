@@ -4,17 +4,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import TypeVar
 
 from sdf_pose_bridge.errors import (
+    FileReadError,
+    LimitError,
     LoadError,
     Place,
     SdfError,
     SdfWarning,
     shortened_message,
+    TemporaryReadError,
 )
+from sdf_pose_bridge.limited_process import ProcessEndedError
 from sdf_pose_bridge.names import listed
+from sdf_pose_bridge.process_limits import LimitExceededError
 
 MOST_PROBLEMS = 100
 """Largest number of errors, and of warnings, that a load keeps."""
@@ -174,6 +180,26 @@ def by_message(problems: Iterable[_Problem]) -> list[tuple[_Problem, str]]:
         text = f' (also line{"s" if others[1:] else ""} {lines})' if others else ''
         result.append((first, text))
     return result
+
+
+@contextmanager
+def errors_of_process(file: str) -> Iterator[None]:
+    """
+    Raise errors of a process that reads a file as errors of the file.
+
+    :raises LimitError: if reading the file exceeds the limits.
+    :raises FileReadError: if the process ends during the call, or cannot be started, or there is
+        no memory for its answer.
+    """
+    place = Place(file)
+    try:
+        yield
+    except LimitExceededError as error:
+        msg = f'the file needs {error} to be read'
+        raise LimitError(msg, place) from None
+    except ProcessEndedError as error:
+        error_class = TemporaryReadError if error.is_temporary else FileReadError
+        raise error_class(str(error), place) from error
 
 
 class _First(dict[Hashable, _Problem]):

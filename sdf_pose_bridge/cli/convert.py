@@ -8,6 +8,7 @@ import argparse
 from collections.abc import Sequence
 import io
 from itertools import groupby, islice
+from operator import itemgetter
 import shutil
 import sys
 import textwrap
@@ -37,7 +38,6 @@ from sdf_pose_bridge.geometry.pose_texts import (
     NAMES_OF_ARGUMENTS,
     TEXT_FORMATS,
     texts_from_lines,
-    TypedPose,
 )
 from sdf_pose_bridge.geometry.poses import Pose, pose_inverse, pose_products, relative_poses
 from sdf_pose_bridge.geometry.rotations import Floats
@@ -153,22 +153,19 @@ class _Conversion:
     def results(self, texts: Sequence[str]) -> list[str | PoseFormatError]:
         """Return, for each text, the lines to print, or the reason why it is not converted."""
         results: list[str | PoseFormatError] = []
-        for source, group in groupby(map(self._read, texts), lambda read: (
-                read.format if isinstance(read, TypedPose) else None)):
-            read = [*group]
-            results += [each for each in read if isinstance(each, PoseFormatError)]
-            if source is not None:
-                results += self._results(
-                    source, [each.numbers for each in read if isinstance(each, TypedPose)])
+        for source, group in groupby(map(self._read, texts), itemgetter(0)):
+            found = [each for _, each in group]
+            results += found if source is None else self._results(source, found)
         return results
 
-    def _read(self, text: str) -> TypedPose | PoseFormatError:
+    def _read(self, text: str) -> tuple[Format | None, Any]:
+        """Return the format and the numbers of a text, or None and the error."""
         try:
-            typed = self._reader.read(text)
+            numbers, source, notes = self._reader.read(text)
         except PoseFormatError as error:
-            return error
-        self._tell(*typed.notes)
-        return typed
+            return None, error
+        self._tell(*notes)
+        return source, numbers
 
     def _results(
         self, source: Format, rows: Sequence[Sequence[float]],

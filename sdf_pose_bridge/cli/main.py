@@ -71,10 +71,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             raise
         discard_output()
         reason = f'the output cannot be written: {(error.strerror or str(error)).lower()}'
-    except CommandError as error:
-        code, reason = error.exit_code, str(error)
-    except PoseFormatError as error:
-        reason = str(error)
+    except (CommandError, PoseFormatError) as error:
+        code, reason = getattr(error, 'exit_code', 1), str(error)
     except SdfError as error:
         print_problems(error.errors, error.warnings, sys.stderr)
         return 1

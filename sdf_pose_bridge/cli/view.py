@@ -33,10 +33,11 @@ from sdf_pose_bridge.cli.arguments import (
 from sdf_pose_bridge.cli.loading import scene_from_file, STANDARD_INPUT
 from sdf_pose_bridge.cli.printing import CommandError, print_problems
 from sdf_pose_bridge.cli.viewer import LIBRARIES, UntestedViserError
-from sdf_pose_bridge.errors import FileReadError, LimitError, Place, SdfError
+from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.units import Units
-from sdf_pose_bridge.limited_process import LimitedProcess, ProcessEndedError
-from sdf_pose_bridge.process_limits import FOR_FILES, LimitExceededError
+from sdf_pose_bridge.limited_process import LimitedProcess
+from sdf_pose_bridge.problems import errors_of_process
+from sdf_pose_bridge.process_limits import FOR_FILES
 from sdf_pose_bridge.scene.pose_setting import pose_change
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.file_watcher import FileWatcher
@@ -191,16 +192,10 @@ def _scene(
     texts: Mapping[str, bytes] | None = None,
 ) -> Scene:
     """Load the file in another process, with other texts of some files, by their paths."""
-    place = Place(options.files[0])
-    try:
+    (path,) = options.files
+    with errors_of_process(path):
         return process.call(
-            FOR_FILES, partial(scene_from_file, shapes=True, texts=texts), options.files[0],
-            options)
-    except LimitExceededError as error:
-        msg = f'the file needs {error} to be read'
-        raise LimitError(msg, place) from None
-    except ProcessEndedError as error:
-        raise FileReadError(str(error), place) from None
+            FOR_FILES, partial(scene_from_file, shapes=True, texts=texts), path, options)
 
 
 def _picture(page: str) -> bytes:

@@ -119,8 +119,9 @@ class Format(NamedTuple):
         numbers = rows[:, self.columns]
         if self.angle == DEGREES:
             numbers = radians_from_degrees(numbers) if self.sequence else np.radians(numbers)
+        quats = self.rotation.quaternions_from_numbers(numbers)
         if not self.position:
-            return self.rotation.quaternions_from_numbers(numbers)
+            return quats
         is_exact = rows[:, self.last_row] == LAST_ROW[:len(self.last_row)]
         if not is_exact.all():
             row = int(np.argmin(is_exact.all(axis=1)))
@@ -128,7 +129,6 @@ class Format(NamedTuple):
                 f'row {row}: last row of the matrix is {tuple(rows[row, self.last_row].tolist())},'
                 f' and must be exactly {LAST_ROW}')
             raise RotationError(msg)
-        quats = self.rotation.quaternions_from_numbers(numbers)
         return np.concatenate((rows[:, self.position] / self.length.factor, quats), axis=1)
 
     def rows_from_common(self, common: Floats) -> Floats:
@@ -270,13 +270,12 @@ def _converted(
         result = target.rows_from_common(common)
     if source.sequence is not None and source.sequence is target.sequence:
         # Rounding must not change angles that are already canonical.
-        angles = [rows[:, column] for column in source.columns]
-        are_canonical = source.sequence.are_canonical(angles, source.half_turn)
-        for column, angle in zip(target.columns, angles, strict=True):
-            kept = angle[are_canonical]
-            result[are_canonical, column] = (
-                kept if target.angle == source.angle
-                else kept * target.half_turn / source.half_turn)
+        angles = rows[:, source.columns]
+        are_canonical = source.sequence.are_canonical(angles.T, source.half_turn)
+        angles = angles[are_canonical]
+        result[np.ix_(are_canonical, target.columns)] = (
+            angles if target.angle == source.angle
+            else angles * target.half_turn / source.half_turn)
     result += 0.0  # no negative zeros
     is_finite = np.isfinite(result)
     if not is_finite.all():
@@ -296,16 +295,12 @@ def _array(values: object, source: Format, what: str) -> Floats:
     except (TypeError, ValueError, OverflowError) as error:
         msg = f'{source.name}: values must be numbers: {error}'
         raise PoseFormatError(msg) from error
-    if array.ndim == 1:
-        if array.size % source.row_length:
-            msg = (
-                f'{array.size} values are not a whole number of {what}s: each {source.name} has'
-                f' {source.row_length} ({source.meaning})')
-            raise PoseFormatError(msg)
-    elif array.ndim != 2 or array.shape[1] != source.row_length:
-        msg = (
-            f'values have shape {array.shape}: each {source.name} has {source.row_length}'
-            f' ({source.meaning}), so they must be flat or have shape (n, {source.row_length})')
+    if array.ndim not in (1, 2) or array.shape[-1] % source.row_length or (
+            array.ndim == 2 and array.shape[1] != source.row_length):
+        what = (
+            f'{array.size} values are not a whole number of {what}s' if array.ndim == 1 else
+            f'values with shape {array.shape} are neither flat nor have one {what} in each row')
+        msg = f'{what}: each {source.name} has {source.row_length} ({source.meaning})'
         raise PoseFormatError(msg)
     return array
 

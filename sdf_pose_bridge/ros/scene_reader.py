@@ -8,9 +8,9 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TypeVar
 
-from sdf_pose_bridge.errors import FileReadError, LimitError, Place, TemporaryReadError
-from sdf_pose_bridge.limited_process import Call, LimitedProcess, ProcessEndedError
-from sdf_pose_bridge.process_limits import FOR_FILES, LimitExceededError
+from sdf_pose_bridge.limited_process import Call, LimitedProcess
+from sdf_pose_bridge.problems import errors_of_process
+from sdf_pose_bridge.process_limits import FOR_FILES
 from sdf_pose_bridge.tf.loaded_scene import LoadedScene, LoadRequest
 
 _Result = TypeVar('_Result')
@@ -47,18 +47,9 @@ class SceneReader(LimitedProcess):
         Call a function that reads or writes the files of a request; it ends with the block.
 
         :param function: a function of a module; its arguments and result can be pickled.
-        :return: a context manager with the call. These errors also come from the block:
-        :raises LimitError: if reading the file exceeds the limits.
-        :raises FileReadError: if the process ends during the call, or cannot be started, or there
-            is no memory for its answer.
+        :return: a context manager with the call. Errors of :func:`errors_of_process` also come
+            from the block.
         """
-        place = Place(request.source)
-        try:
-            with self.start(FOR_FILES, function, *arguments) as call:
-                yield call
-        except LimitExceededError as error:
-            msg = f'the file needs {error} to be read'
-            raise LimitError(msg, place) from None
-        except ProcessEndedError as error:
-            error_class = TemporaryReadError if error.is_temporary else FileReadError
-            raise error_class(str(error), place) from error
+        with (errors_of_process(request.source),
+              self.start(FOR_FILES, function, *arguments) as call):
+            yield call

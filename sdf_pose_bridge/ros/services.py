@@ -177,9 +177,7 @@ def set_pose(
         loaded.request, write_frame_change, loaded.request, fingerprint_of_scene(loaded.scene),
         request.frame, _pose_from_request(request, loaded), request.pose.header.frame_id,
         loaded.joint_positions, request.dry_run)
-    return SetPose.Response(
-        success=True, file=change.path, line=change.line, diff=change.diff,
-        moved_frames=list(change.moved_frames))
+    return SetPose.Response(success=True, **change._asdict())
 
 
 def _pose_from_request(request: SetPose.Request, loaded: LoadedScene) -> Pose:

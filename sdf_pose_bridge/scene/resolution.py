@@ -153,38 +153,28 @@ def _place_automatic_inertials(root_poses: PoseArray, elements: Elements) -> dic
 
     :return: the inertials, with the axes of their links.
     """
-    automatic = elements.automatic_inertials
-    if not automatic:
+    if not elements.automatic_inertials:
         return {}
-    indices = np.array([*automatic])
-    links = elements.parents[indices]
     collisions_of = defaultdict[int, list[int]](list)
     for index in np.flatnonzero(elements.kinds == Kind.COLLISION).tolist():
         collisions_of[int(elements.parents[index])].append(index)
-    # One row for each collision, ordered by inertials; ``owners`` has the inertial of each row.
-    collisions = [index for link in links.tolist() for index in collisions_of[link]]
-    counts = [len(inertial.solids) for inertial in automatic.values()]
-    owners = np.repeat(np.arange(len(counts)), counts)
-    starts = np.cumsum([0, *counts[:-1]])
-    solids = [solid for inertial in automatic.values() for solid in inertial.solids]
-    masses = np.concatenate([inertial.masses_kg for inertial in automatic.values()])
-    points = transformed_points(
-        root_poses[collisions], np.array([(0.0, 0.0, solid.center_z_m) for solid in solids]))
-    totals = np.add.reduceat(masses, starts)
-    root_poses[indices] = root_poses[links]
-    has_mass = totals != 0.0
-    sums = np.add.reduceat(masses[:, np.newaxis] * points, starts)
-    root_poses[indices[has_mass], :3] = sums[has_mass] / totals[has_mass, np.newaxis]
-    to_links = matrix_from_quaternion(root_poses[links, 3:]).transpose(0, 2, 1)[owners]
-    axes = to_links @ matrix_from_quaternion(root_poses[collisions, 3:])
-    moments = masses[:, np.newaxis] * [solid.moments_m2 for solid in solids]
-    offsets = np.einsum('nij,nj->ni', to_links, points - root_poses[indices[owners], :3])
-    matrices = np.add.reduceat(moved_moments(
-        np.einsum('nij,nj,nkj->nik', axes, moments, axes), masses, offsets), starts)
     inertials = {}
-    for index, total_kg, matrix in zip(automatic, totals.tolist(), matrices, strict=True):
-        mass_kg = automatic[index].mass_kg
-        scale = 1.0 if mass_kg is None or not total_kg else mass_kg / total_kg
+    for index, automatic in elements.automatic_inertials.items():
+        link, masses = int(elements.parents[index]), np.array(automatic.masses_kg)
+        poses = root_poses[collisions_of[link]]
+        to_link = matrix_from_quaternion(root_poses[link, 3:]).T
+        points = transformed_points(
+            poses, np.array([(0.0, 0.0, solid.center_z_m) for solid in automatic.solids]))
+        total_kg = float(masses.sum())
+        root_poses[index] = root_poses[link]
+        if total_kg:
+            root_poses[index, :3] = masses @ points / total_kg
+        axes = to_link @ matrix_from_quaternion(poses[:, 3:])
+        moments = masses[:, np.newaxis] * [solid.moments_m2 for solid in automatic.solids]
+        matrix = moved_moments(
+            axes * moments[:, np.newaxis] @ axes.transpose(0, 2, 1), masses,
+            (points - root_poses[index, :3]) @ to_link.T).sum(axis=0)
+        scale = automatic.mass_kg / total_kg if automatic.mass_kg is not None and total_kg else 1.0
         inertials[index] = Inertial(scale * total_kg, moments_from_matrix(scale * matrix))
     return inertials
 

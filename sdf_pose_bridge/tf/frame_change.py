@@ -22,7 +22,8 @@ from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 class FrameChange(NamedTuple):
     """A change of one pose in a file."""
 
-    path: str
+    file: str
+    """Its path."""
     diff: str
     line: int
     """The line of the pose, or of the element in which it is inserted."""

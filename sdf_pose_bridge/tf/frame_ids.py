@@ -112,21 +112,20 @@ class FrameNaming(NamedTuple):
             of a world or an implicit root.
         :return: a name for each element, as in SDF, with the kind where that is needed.
         """
-        names = [scene.names[element] for element in elements.tolist()]
-        kinds = scene.kinds[elements]
-        for position in np.flatnonzero(np.isin(kinds, _LABELLED_KINDS)).tolist():
-            own_name = scene.own_name(int(elements[position]))
-            scope, label = names[position].removesuffix(own_name), Kind(kinds[position]).label
-            names[position] = f'{scope}{label}{SEPARATOR}{own_name}'
         is_in_model_file = (scene.kinds[scene.roots[elements[:1]]] == Kind.ROOT).any()
-        if self.names is FrameNames.RELATIVE or (
-                self.names is FrameNames.AUTO and is_in_model_file):
-            is_top_level = scene.parents[scene.parents] < 0
-            models = ends_from_pointers(np.where(is_top_level, -1, scene.parents))[elements]
-            names = [
-                name if model == element else name.removeprefix(scene.names[model] + SEPARATOR)
-                for name, element, model in zip(
-                    names, elements.tolist(), models.tolist(), strict=True)]
+        is_relative = self.names is FrameNames.RELATIVE or (
+            self.names is FrameNames.AUTO and is_in_model_file)
+        is_top_level = scene.parents[scene.parents] < 0
+        models = ends_from_pointers(np.where(is_top_level, -1, scene.parents))[elements]
+        names = []
+        for element, model in zip(elements.tolist(), models.tolist(), strict=True):
+            name, kind = scene.names[element], Kind(scene.kinds[element])
+            if kind in _LABELLED_KINDS:
+                own_name = scene.own_name(element)
+                name = f'{name.removesuffix(own_name)}{kind.label}{SEPARATOR}{own_name}'
+            if is_relative and model != element:
+                name = name.removeprefix(scene.names[model] + SEPARATOR)
+            names.append(name)
         return names
 
     def frame_ids_from_scene(self, scene: Scene, elements: Indices) -> list[str]:

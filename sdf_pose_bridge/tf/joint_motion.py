@@ -88,7 +88,7 @@ def dofs_from_joint(joint: Joint, name: str = '') -> list[DegreeOfFreedom]:
         for motion, axis, suffix in JOINT_TYPES[joint.type]]
 
 
-class Motions(NamedTuple):
+class DisplacedPoses(NamedTuple):
     """Products of a constant pose, a displacement by a degree of freedom, and a constant pose."""
 
     dofs: Indices
@@ -186,7 +186,7 @@ class JointMotion:
         found: NDArray[np.intp] = (count + 7 * (dofs - count))[:, np.newaxis] + np.arange(7)
         return found
 
-    def motions(self, before: PoseArray, dofs: Indices, after: PoseArray) -> Motions:
+    def motions(self, before: PoseArray, dofs: Indices, after: PoseArray) -> DisplacedPoses:
         """
         Return the motions of poses by some degrees of freedom.
 
@@ -196,7 +196,7 @@ class JointMotion:
         """
         axes, points, rad_per_unit, m_per_unit = (each[dofs] for each in self._screws)
         free = np.flatnonzero(dofs >= len(self.dofs))
-        return Motions(
+        return DisplacedPoses(
             dofs, ScrewMotions(before, axes, points, rad_per_unit, m_per_unit, after), free,
             self.coordinates(dofs[free]), relative_poses(self._poses[dofs[free]], after[free]))
 
