@@ -27,7 +27,7 @@ class FrameChange(NamedTuple):
     diff: str
     line: int
     """The line of the pose, or of the element in which it is inserted."""
-    moved_frames: tuple[str, ...]
+    moved_frames: list[str]
     """The other frames that move."""
 
 
@@ -66,6 +66,6 @@ def write_frame_change(
     elements = loaded.tree.elements.tolist()
     if not dry_run:
         change.file.write()
-    return FrameChange(change.file.path, change.file.diff, change.line, tuple(
+    return FrameChange(change.file.path, change.file.diff, change.line, [
         frame_id for frame_id, other in zip(loaded.tree.frame_ids, elements, strict=True)
-        if other not in (-1, element) and scene.names[other] in moved))
+        if other not in (-1, element) and scene.names[other] in moved])
