@@ -127,7 +127,7 @@ def transforms_of_100_joints() -> Iterator[tuple[Function, Function | None]]:
 
     from sdf_pose_bridge.ros.published_frames import PublishedFrames
     from sdf_pose_bridge.ros.publishers import Publishers
-    from sdf_pose_bridge.ros.state_messages import Effects
+    from sdf_pose_bridge.ros.state_messages import KnownEffects
     from sdf_pose_bridge.ros.state_topic import JOINT_STATE, StateTopic, TopicKey
     from sdf_pose_bridge.tf.lookup import PoseLookup
     with node() as ros:
@@ -138,7 +138,7 @@ def transforms_of_100_joints() -> Iterator[tuple[Function, Function | None]]:
         frames = PublishedFrames(Publishers(ros), tree, positions, {}).moving
         assert frames is not None
         topic = StateTopic(ros, TopicKey('joint_states', '', JOINT_STATE))
-        effects = Effects(frames, PoseLookup(scene, tree, positions))
+        effects = KnownEffects(frames, PoseLookup(scene, tree, positions))
         broadcaster = JointBroadcaster(ros, 100, '/tf_of_counterpart')
         messages = joint_states(100)
         # The counterpart gets objects, which rclpy would have to make first.

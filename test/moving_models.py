@@ -11,7 +11,7 @@ from sdf_pose_bridge.ros.cdr import StampedPose
 from sdf_pose_bridge.ros.model_poses import messages_from_poses
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
-from sdf_pose_bridge.ros.state_messages import Effects, StateSource
+from sdf_pose_bridge.ros.state_messages import KnownEffects, StateSource
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
@@ -33,9 +33,10 @@ class Models:
         tree = tf_tree_from_scene(scene, TfOptions(
             use_joint_states=True, follows_models=True, frame_prefix='p/'))
         self.positions = JointPositions(scene, tree.moving.motion)
-        self.effects = Effects(
-            PublishedFrames(Publishers(node), tree, self.positions, {}).moving,
-            PoseLookup(scene, tree, self.positions), [re.compile('.*/odom')], placement)
+        self.frames = PublishedFrames(Publishers(node), tree, self.positions, {}).moving
+        self.effects = KnownEffects(
+            self.frames, PoseLookup(scene, tree, self.positions), [re.compile('.*/odom')],
+            placement)
         self.source = StateSource(node, '/poses')
 
     def read(self, child='a', frame_id='', pose=TURNED, stamp_ns=5, model=None):

@@ -13,6 +13,7 @@ import sdf_pose_bridge
 from sdf_pose_bridge.cli.main import new_parser
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.formats import POSE_FORMATS, ROTATION_FORMATS
+from sdf_pose_bridge.ros.cdr import POSE_TYPES
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.shape_types import SHAPE_TYPES
 from sdf_pose_bridge.sdformat.specification import JOINT_TYPES
@@ -47,6 +48,7 @@ NAMES = {
         name.replace('*/', '<model>/').replace('*', '<frame>')
         for name in names_of_policy('service') | names_of_policy('topic')
         if not re.search('parameter|type_desc|^/(rosout|clock)$', name)),
+    'gazebo.md': [each.rpartition('/')[2] for each in POSE_TYPES],
     'pose_formats.md': [*POSE_FORMATS, *ROTATION_FORMATS],
     'joints.md': JOINT_TYPES,
     'what_is_read.md': SHAPE_TYPES,

@@ -20,6 +20,7 @@ import pytest
 import sdf_pose_bridge
 from sdf_pose_bridge.cli.main import new_parser
 from sdf_pose_bridge.cli.viewer import LIBRARIES
+from sdf_pose_bridge.ros.cdr import JOINT_STATE, POSE_TYPES
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGES = {
@@ -85,7 +86,8 @@ def test_package_xml_declares_every_package_that_the_code_imports():
     files = [*(ROOT / 'sdf_pose_bridge').rglob('*.py'), *(ROOT / 'launch').glob('*.py')]
     # A launch file in XML imports nothing, but is read by a package of its own. The command xacro
     # is run by bridge.launch.py.
-    imported = {'launch_xml', 'xacro'}
+    imported = {'launch_xml', 'xacro', *(
+        each.partition('/')[0] for each in (JOINT_STATE, *POSE_TYPES))}
     for file in files:
         for node in ast.walk(ast.parse(file.read_text())):
             names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []

@@ -106,6 +106,22 @@ def result_from_executor(node: Node, function: Callable[[], _Result]) -> _Result
 
     :raises Exception: any exception of the function.
     """
+    assert node.executor is not None
+    return result_from_thread(node.executor.create_task, function)
+
+
+def result_from_thread(
+    hand_over: Callable[[Callable[[], None]], object], function: Callable[[], _Result],
+    longest_s: float | None = None,
+) -> _Result:
+    """
+    Have another thread call a function, and wait for its result.
+
+    :param hand_over: hands a function to the thread.
+    :param longest_s: longest time in s to wait; None for any.
+    :raises concurrent.futures.TimeoutError: after this time.
+    :raises Exception: any exception of the function.
+    """
     future: concurrent.futures.Future[_Result] = concurrent.futures.Future()
 
     def call() -> None:
@@ -116,9 +132,8 @@ def result_from_executor(node: Node, function: Callable[[], _Result]) -> _Result
         except Exception as error:  # noqa: BLE001 - raised by the one who waits
             future.set_exception(error)
 
-    assert node.executor is not None
-    node.executor.create_task(call)
-    return future.result()
+    hand_over(call)
+    return future.result(longest_s)
 
 
 def wake(executor: Executor | None) -> None:

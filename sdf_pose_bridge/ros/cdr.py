@@ -119,13 +119,11 @@ class StampedRecords:
         begin = _BEGIN + struct.pack('<I', len(rows))
         if not len(rows):
             return begin
-        data, bounds, first, last = self._buffer.data, self._bounds, rows[0], rows[-1]
+        data, bounds, first = self._buffer.data, self._bounds, rows[0]
         # The first record follows a length of four bytes, so it is not at a multiple of eight, and
         # its numbers need other bytes of alignment.
         size, end = self._sizes_before_numbers[first], bounds[first + 1]
-        are_adjacent = last - first + 1 == len(rows)
-        others = [data[end:bounds[last + 1]]] if are_adjacent else [
-            data[bounds[row]:bounds[row + 1]] for row in rows[1:].tolist()]
+        others = [data[bounds[row]:bounds[row + 1]] for row in rows[1:].tolist()]
         return b''.join([
             begin, data[bounds[first]:bounds[first] + size], bytes(-(_LENGTH + size) % 8),
             data[end - _NUMBERS:end], *others])
@@ -177,6 +175,30 @@ def joint_state_from_bytes(
     return _stamp_ns(sec, nanosec), names, positions
 
 
+class PoseType(NamedTuple):
+    """The fields of a type of messages with poses, in their order; others follow a single pose."""
+
+    is_sequence: bool = False
+    """Whether it has many poses, and begins with their number."""
+    has_header: bool = True
+    """Whether it has the stamp and the frame id of each pose."""
+    has_child: bool = False
+    """Whether it has a child frame id, which names a model or a frame in one."""
+
+
+JOINT_STATE = 'sensor_msgs/msg/JointState'
+TF_MESSAGE = 'tf2_msgs/msg/TFMessage'
+
+POSE_TYPES = {
+    'geometry_msgs/msg/PoseStamped': PoseType(),
+    'geometry_msgs/msg/PoseWithCovarianceStamped': PoseType(),
+    'geometry_msgs/msg/TransformStamped': PoseType(has_child=True),
+    'nav_msgs/msg/Odometry': PoseType(has_child=True),
+    TF_MESSAGE: PoseType(is_sequence=True, has_child=True),
+}
+"""The types of messages with poses of models."""
+
+
 class StampedPose(NamedTuple):
     """A pose in a message."""
 
@@ -189,14 +211,11 @@ class StampedPose(NamedTuple):
     """Seven numbers as they were sent: x y z, quaternion x y z w."""
 
 
-def poses_from_bytes(
-    data: bytes, *, has_child: bool, is_sequence: bool = False) -> Iterator[StampedPose]:
+def poses_from_bytes(data: bytes, type_: PoseType) -> Iterator[StampedPose]:
     """
     Read a message with poses or transforms. Fields that follow a single pose are not read.
 
     :param data: the serialized message.
-    :param has_child: whether its type has a child frame id.
-    :param is_sequence: whether it is a TFMessage.
     :return: the poses, each of which is read when it is asked for.
     :raises ValueError: as for :func:`joint_state_from_bytes`, where the message is not valid.
     """
@@ -204,15 +223,16 @@ def poses_from_bytes(
     stamp_and_length, length_format, _, pose_format = _FORMATS[data[:2]]
     place, count = _START, 1
     try:
-        if is_sequence:
+        if type_.is_sequence:
             count, = length_format.unpack_from(data, place)
             place += _LENGTH
         for _ in range(count):
             place += -place % 4
-            sec, nanosec, _ = stamp_and_length.unpack_from(data, place)
-            frame_id, place = _string_from_bytes(data, place + _STAMP, length_format)
-            child_frame_id = ''
-            if has_child:
+            sec, nanosec, frame_id, child_frame_id = 0, 0, '', ''
+            if type_.has_header:
+                sec, nanosec, _ = stamp_and_length.unpack_from(data, place)
+                frame_id, place = _string_from_bytes(data, place + _STAMP, length_format)
+            if type_.has_child:
                 child_frame_id, place = _string_from_bytes(data, place, length_format)
             place += (_START - place) % 8
             pose = pose_format.unpack_from(data, place)

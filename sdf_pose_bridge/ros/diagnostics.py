@@ -14,12 +14,9 @@ import datetime
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 
-from sdf_pose_bridge.ros.log_lines import (
-    count_in_words,
-    line_about_unreported,
-    Unreported,
-)
+from sdf_pose_bridge.ros.log_lines import count_in_words
 from sdf_pose_bridge.ros.publishers import SwitchedPublisher, Topic
+from sdf_pose_bridge.ros.state_report import StateReport
 from sdf_pose_bridge.tf.loaded_scene import LoadedScene
 
 PERIOD_S = 2.0
@@ -37,14 +34,14 @@ class Diagnostics:
 
     The topic exists once it is switched on.
 
-    :param unreported: returns the joints and models whose positions or poses are missing.
+    :param state_report: returns the report about joints and models.
     """
 
-    def __init__(self, node: Node, unreported: Callable[[], Unreported]) -> None:
+    def __init__(self, node: Node, state_report: Callable[[], StateReport]) -> None:
         self._node = node
         self._publisher = SwitchedPublisher(
             node, Topic('/diagnostics', DiagnosticArray, depth=10, is_latched=False))
-        self._unreported = unreported
+        self._state_report = state_report
         self._last: tuple[LoadedScene, Sequence[str]] | None = None
         self._message = DiagnosticArray()
 
@@ -69,19 +66,19 @@ class Diagnostics:
         if self._last is not None:
             name = self._node.get_fully_qualified_name().lstrip('/')
             self._message.status = [
-                status_from_scene(*self._last, self._unreported(), name)]
+                status_from_scene(*self._last, self._state_report(), name)]
         self._message.header.stamp = self._node.get_clock().now().to_msg()
         self._publisher.publish(self._message)
 
 
 def status_from_scene(
-    loaded: LoadedScene, failure: Sequence[str], unreported: Unreported, name: str,
+    loaded: LoadedScene, failure: Sequence[str], states: StateReport, name: str,
 ) -> DiagnosticStatus:
     """
     Return the status of the node.
 
     :param failure: the errors of the last load; empty if it succeeded.
-    :param unreported: the joints and models whose positions or poses are missing.
+    :param states: the report about joints and models.
     :return: ERROR if the last load failed, so that the scene before it is still published, or if
         messages end in internal errors; WARN if the scene has warnings, or joints or models that
         are not reported, or topics have problems; otherwise OK.
@@ -100,24 +97,24 @@ def status_from_scene(
         'warnings': str(len(warnings)),
         'first warning': str(warnings[0]) if warnings else '',
         'last error': '\n'.join(failure),
-        'joints not reported': str(unreported.number),
-        'first joint not reported': unreported.first,
-        'models not reported': str(len(unreported.models)),
-        'first model not reported': next(iter(unreported.models), ''),
-        'problems of topics': str(len(unreported.problems)),
+        'joints not reported': str(len(states.joints)),
+        'first joint not reported': next(iter(states.joints), ''),
+        'models not reported': str(len(states.models)),
+        'first model not reported': next(iter(states.models), ''),
+        'problems of topics': str(len(states.problems)),
     }
     if failure:
         level = DiagnosticStatus.ERROR
         text = f'the last load failed, the scene before it is published: {failure[0]}'
-    elif unreported.failures:
+    elif states.failures:
         level = DiagnosticStatus.ERROR
-        text = '; '.join(unreported.failures)
-    elif unreported.problems:
+        text = '; '.join(states.failures)
+    elif states.problems:
         level = DiagnosticStatus.WARN
-        text = '; '.join(unreported.problems)
-    elif unreported.number or unreported.models:
+        text = '; '.join(states.problems)
+    elif states.joints or states.models:
         level = DiagnosticStatus.WARN
-        text = line_about_unreported(unreported)
+        text = states.line_about_unreported()
     elif warnings:
         level = DiagnosticStatus.WARN
         text = f'serving {loaded.path.name} with {count_in_words(len(warnings), "warning")}'

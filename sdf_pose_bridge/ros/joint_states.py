@@ -19,7 +19,7 @@ import contextlib
 import math
 import threading
 import time
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,14 +28,16 @@ from rclpy.node import Node
 from rclpy.task import Future
 
 from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.ros.background import result_from_executor, wake
+from sdf_pose_bridge.ros.background import result_from_executor, result_from_thread, wake
 from sdf_pose_bridge.ros.cdr import NANOSECONDS
-from sdf_pose_bridge.ros.log_lines import line_about_unreported, text_about_defect, Unreported
+from sdf_pose_bridge.ros.log_lines import text_about_defect
 from sdf_pose_bridge.ros.message_failures import MessageFailures
+from sdf_pose_bridge.ros.message_problems import MessageProblems
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.period import NO_ROWS, Period, union
-from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
-from sdf_pose_bridge.ros.state_messages import Effect, Effects, Message, StateSource
+from sdf_pose_bridge.ros.published_frames import MovingTopics
+from sdf_pose_bridge.ros.state_messages import Effect, KnownEffects, Message, StateSource
+from sdf_pose_bridge.ros.state_report import StateReport
 from sdf_pose_bridge.ros.state_sources import StateSources
 from sdf_pose_bridge.ros.state_topic import StateTopic
 from sdf_pose_bridge.ros.topic_names import StateTopics
@@ -65,11 +67,13 @@ _REST_S = 0.5
 _LONGEST_SLEEP_S, _CLOCK_PERIOD_S = 0.1, 0.01
 """Longest waits in a period: before too many messages wait, and for a simulated clock."""
 
+_Result = TypeVar('_Result')
+
 
 class _Target(NamedTuple):
     """The frames, sources and settings that the thread follows."""
 
-    frames: PublishedMovingFrames
+    frames: MovingTopics
     lookup: PoseLookup
     sources: Sequence[StateSource]
     settings: Settings
@@ -92,19 +96,19 @@ class JointStates:
     """
 
     def __init__(
-        self, node: Node, frames: PublishedMovingFrames, lookup: PoseLookup,
+        self, node: Node, frames: MovingTopics, lookup: PoseLookup,
         topics: StateTopics, settings: Settings,
     ) -> None:
         self._node = node
         self._logger = node.get_logger()
-        self.sources = result_from_executor(
-            node, lambda: StateSources(node, self._follow_sources, self._wake))
         self._wait_set = WaitSet(node.context)
+        self.sources = result_from_executor(
+            node, lambda: StateSources(node, self._follow_sources, self._wait_set.wake))
         self._target = self._next_target = _Target(frames, lookup, (), settings)
         self._calls: deque[Callable[[], object]] = deque()
         self._has_to_end = False
         self._failures = MessageFailures(self._log_defect, InvalidHandle, MemoryError)
-        # The thread alone changes everything else. First, what is due at some monotonic time.
+        # The thread alone uses everything else. First, what is due at some monotonic time.
         self._due: dict[Callable[[], None], float] = {}
         self._topics_due = 0.0
         self._now_ns = 0
@@ -122,7 +126,7 @@ class JointStates:
     # Calls of the loader and, for look-ups, of the executor
 
     def follow(
-        self, frames: PublishedMovingFrames, lookup: PoseLookup, topics: StateTopics,
+        self, frames: MovingTopics, lookup: PoseLookup, topics: StateTopics,
         settings: Settings,
     ) -> None:
         """
@@ -141,13 +145,18 @@ class JointStates:
 
     def wait(self) -> None:
         """Wait until all messages so far are processed; a thread that hangs ends the node."""
-        has_come = threading.Event()
-        self._call(has_come.set)
-        if not has_come.wait(LONGEST_ANSWER_S):
-            raise TimeoutError
+        self._result(lambda: None)
+
+    def report(self) -> StateReport:
+        """Return the report of the thread when all messages so far are processed."""
+        return self._result(self._report)
 
     def current_lookup(self) -> Future:
-        """Return a future for the look-up of poses, when all messages so far are processed."""
+        """
+        Return a future for the look-up of poses, when all messages so far are processed.
+
+        It reads the positions while the thread goes on; new ones replace the array of values.
+        """
         future = Future()
         self._call(lambda: future.set_result(self._target.lookup))
         return future
@@ -155,22 +164,9 @@ class JointStates:
     def end(self) -> None:
         """End the thread, and destroy the subscriptions; the executor calls this."""
         self._has_to_end = True
-        self._wake()
+        self._wait_set.wake()
         self._thread.join()
         self.sources.end()
-
-    @property
-    def unreported(self) -> Unreported:
-        """The joints and models that no message has named in time, and problems of sources."""
-        target = self._next_target
-        positions = target.frames.positions
-        joints, models = ([], []) if self._end_grace in self._due else positions.unreported()
-        topics = [
-            topic.name for topic in self.sources.joint_state_topics
-            if not positions.unknown(joints[:1], topic.model)] if joints else []
-        return Unreported(
-            len(joints), (*joints, '')[0], topics, models,
-            self._effects.problems(target.sources), self._failures.problems())
 
     def _follow_sources(
         self, unwanted: Sequence[StateTopic], target: _Target | None = None,
@@ -182,12 +178,10 @@ class JointStates:
     def _call(self, function: Callable[[], object]) -> None:
         """Have the thread call a function when all messages so far are processed."""
         self._calls.append(function)
-        self._wake()
+        self._wait_set.wake()
 
-    def _wake(self) -> None:
-        # The thread may have ended with the node.
-        with contextlib.suppress(InvalidHandle):
-            self._wait_set.wake()
+    def _result(self, function: Callable[[], _Result]) -> _Result:
+        return result_from_thread(self._call, function, LONGEST_ANSWER_S)
 
     # The thread
 
@@ -220,11 +214,11 @@ class JointStates:
         has_ended = self._period.has_begun and (
             self._has_jumped or self._now_ns >= self._period.ends_ns)
         if ready and not has_ended:
-            self._take(ready, at_once=True)
+            self._process(ready, at_once=True)
         if self._period.has_begun and (has_ended or call_count or not ready):
             # The next turn takes the messages of awaited sources, at once.
-            self._take([each for each in self._target.sources
-                        if has_ended or call_count or each not in awaited], at_once=False)
+            self._process([each for each in self._target.sources
+                           if has_ended or call_count or each not in awaited], at_once=False)
         if has_ended:
             self._end_period()
         self._make_calls(call_count)
@@ -256,9 +250,10 @@ class JointStates:
 
     def _start_frames(self) -> None:
         target = self._target
-        self._effects = Effects(
+        self._effects = KnownEffects(
             target.frames, target.lookup, target.settings.model_pose_frames,
             target.settings.model_pose_placement)
+        self._problems = MessageProblems(target.frames)
         self._period.forget()
         now = time.monotonic()
         self._due[self._publish_all] = self._due[self._publish_at_rest] = now
@@ -274,9 +269,9 @@ class JointStates:
 
     # Messages
 
-    def _take(self, sources: Sequence[StateSource], *, at_once: bool) -> None:
+    def _process(self, sources: Sequence[StateSource], *, at_once: bool) -> None:
         """
-        Take messages of sources, and set their positions.
+        Take the messages of sources, and set their positions.
 
         :param at_once: whether to publish what they move, and to leave the others as soon as a
             period has begun. Otherwise it waits; of those with the same names the newest counts.
@@ -341,7 +336,7 @@ class JointStates:
                 f'following {count} sources; the first message is on {source.name}')
         moved = target.frames.stamp(rows, stamp_ns, ignore_stamps=ignores_stamps)
         if len(rows) and not len(moved):
-            self._effects.note_lateness(effect, stamp_ns, self._now_ns)
+            self._problems.note_lateness(effect, stamp_ns, self._now_ns)
         self._processed.add(source)
         return moved
 
@@ -374,7 +369,7 @@ class JointStates:
             self._due[self._publish_all] = time.monotonic() + INITIAL_PERIOD_S
 
     def _publish_to_listeners(self) -> None:
-        # A late one does not delay those that follow.
+        # Later publications keep their schedule.
         self._topics_due = max(self._topics_due + TOPICS_PERIOD_S, time.monotonic())
         self._target.frames.publish_topics(only_listeners=True)
 
@@ -384,10 +379,20 @@ class JointStates:
 
     def _look_at_publishers(self) -> None:
         self._due[self._look_at_publishers] = time.monotonic() + PUBLISHERS_PERIOD_S
-        self._effects.look_at_publishers()
+        self._problems.look_at_publishers(self._effects.known)
+
+    def _report(self) -> StateReport:
+        target = self._target
+        positions = target.frames.positions
+        joints, models = ([], []) if self._end_grace in self._due else positions.unreported()
+        return StateReport(
+            joints, models,
+            [each.name for each in target.sources if joints and each.is_of_joints
+             and not positions.unknown(joints[:1], each.model)],
+            self._problems.lines(target.sources), self._failures.problems())
 
     def _end_grace(self) -> None:
-        """Report the joints and models that no message has named, once."""
-        if line := line_about_unreported(self.unreported):
+        """Log the joints and models that no message has named, once."""
+        if line := self._report().line_about_unreported():
             self._has_reported_missing = True
             self._logger.info(line)

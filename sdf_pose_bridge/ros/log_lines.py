@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from itertools import compress
 import time
 import traceback
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -59,23 +59,6 @@ class RareWarnings:
         """Log a warning about names, unless all of them have been reported before."""
         if not self._reported_names.issuperset(names) and self.warn(about, text):
             self._reported_names.update(names[:MOST_REPORTED - len(self._reported_names)])
-
-
-class Unreported(NamedTuple):
-    """Joints and models that no message has reported."""
-
-    number: int = 0
-    """The number of joints."""
-    first: str = ''
-    """The name of the first joint."""
-    topics: Sequence[str] = ()
-    """The full names of the topics on which messages can name it."""
-    models: Sequence[str] = ()
-    """The names of the models."""
-    problems: Sequence[str] = ()
-    """A line for each source of messages with old stamps, and for other publishers of frames."""
-    failures: Sequence[str] = ()
-    """A line for each source whose messages end in internal errors."""
 
 
 def line_from_text(text: object) -> str:
@@ -207,28 +190,11 @@ def line_about_gazebo(count: int) -> str:
         '"sdf_pose check FILE", or "sdf_pose check -" for a text')
 
 
-def line_about_unreported(missing: Unreported) -> str:
-    """Return a line with the numbers of joints and models that are not reported; '' if none is."""
-    parts = []
-    if missing.number:
-        parts.append(
-            f'no message has named {count_in_words(missing.number, "joint")} yet, for example '
-            f'{names_in_line([missing.first])}; frames that a joint moves have no transforms '
-            f'until a message on {" or ".join(missing.topics) or "a topic"} names the joint, '
-            'or with unreported_joints:=zero')
-    if missing.models:
-        parts.append(
-            f'no pose has come yet for {count_in_words(len(missing.models), "model")}, for '
-            f'example {names_in_line(missing.models[:1])}; its frames have no transform from '
-            'the root until a message has its pose')
-    return '; '.join(parts)
-
-
 def line_about_joints_at_rest(scene: Scene, model: str, frame_names: FrameNames) -> str:
     """
     Return a line that joints do not move; '' if no joint can move.
 
-    Joints that follow others are not counted, as in :func:`line_about_unreported`.
+    Joints that follow others are not counted, as in ``StateReport``.
 
     :param model: the scoped name of the only model that is published; empty for everything.
     :param frame_names: the part of a scoped name that the name of a joint contains.

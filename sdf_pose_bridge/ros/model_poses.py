@@ -16,7 +16,7 @@ from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.ros.cdr import LONGEST_READ_S, StampedPose
 from sdf_pose_bridge.ros.log_lines import names_in_line
-from sdf_pose_bridge.ros.state_messages import Effects, Message, StateSource
+from sdf_pose_bridge.ros.state_messages import KnownEffects, Message, StateSource
 from sdf_pose_bridge.tf.joint_motion import NO_DOF
 from sdf_pose_bridge.tf.joint_positions import LARGEST_POSITION
 
@@ -25,8 +25,8 @@ MOST_OFF_UNIT = 0.01
 
 
 def messages_from_poses(
-    poses: Iterable[StampedPose], source: StateSource, effects: Effects, dof: int | None = None,
-    placements: Mapping[int, str] | None = None,
+    poses: Iterable[StampedPose], source: StateSource, effects: KnownEffects,
+    dof: int | None = None, placements: Mapping[int, str] | None = None,
 ) -> list[Message]:
     """
     Find the effects of poses; log those that cannot be used.

@@ -35,7 +35,6 @@ from sdf_pose_bridge.ros.log_lines import (
     lines_from_error,
     lines_from_warnings,
     text_about_defect,
-    Unreported,
 )
 from sdf_pose_bridge.ros.other_publishers import OtherPublishers, OTHERS_PERIOD_S
 from sdf_pose_bridge.ros.parameters import Settings, SettingsError
@@ -43,10 +42,8 @@ from sdf_pose_bridge.ros.published_frames import frames_from_scene, PublishedFra
 from sdf_pose_bridge.ros.publishers import SwitchedPublisher, Topic
 from sdf_pose_bridge.ros.scene_reader import loaded_scene, SceneReader
 from sdf_pose_bridge.ros.services import add_services, SERVICE_QOS, set_pose
-from sdf_pose_bridge.ros.topic_names import (
-    check_number_of_topics,
-    state_topics_from_settings,
-)
+from sdf_pose_bridge.ros.state_report import StateReport
+from sdf_pose_bridge.ros.topic_names import check_number_of_topics, state_topics_from_settings
 from sdf_pose_bridge.tf.loaded_scene import LoadedScene, LoadRequest
 from sdf_pose_bridge.tf.loading import files_behind_error
 from sdf_pose_bridge.tf.lookup import PoseLookup
@@ -96,7 +93,7 @@ class SdfPoseBridge:
         self._reader = reader
         self._entities: tuple[str, ...] = ()
         self._joint_states: JointStates | None = None
-        self._diagnostics = Diagnostics(node, self._unreported)
+        self._diagnostics = Diagnostics(node, self._state_report)
         self._others = OtherPublishers(node)
         self._has_told_of_joints = False
         self._follower = FileFollower(loaded)
@@ -366,8 +363,8 @@ class SdfPoseBridge:
 
     # Reporting
 
-    def _unreported(self) -> Unreported:
-        found = Unreported() if self._joint_states is None else self._joint_states.unreported
+    def _state_report(self) -> StateReport:
+        found = StateReport() if self._joint_states is None else self._joint_states.report()
         return found._replace(problems=[*found.problems, *self._others.problems.values()])
 
     def _report_success(self) -> None:

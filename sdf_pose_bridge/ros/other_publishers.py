@@ -17,7 +17,7 @@ from rclpy.subscription import Subscription
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from sdf_pose_bridge.ros.background import result_from_executor
-from sdf_pose_bridge.ros.cdr import LONGEST_READ_S, poses_from_bytes
+from sdf_pose_bridge.ros.cdr import LONGEST_READ_S, POSE_TYPES, poses_from_bytes, TF_MESSAGE
 from sdf_pose_bridge.ros.log_lines import names_in_line
 from sdf_pose_bridge.ros.published_frames import PublishedFrames, TF, TF_STATIC
 from sdf_pose_bridge.ros.publishers import Topic
@@ -124,7 +124,7 @@ class OtherPublishers:
         self, topic: Topic, data: bytes, own_stamps_ns: Collection[int], ends_at: float,
     ) -> None:
         """Find the frames in a message of another node that this node publishes too."""
-        for pose in poses_from_bytes(data, has_child=True, is_sequence=True):
+        for pose in poses_from_bytes(data, POSE_TYPES[TF_MESSAGE]):
             if time.monotonic() > ends_at:
                 return
             child, other = pose.child_frame_id.lstrip('/'), pose.frame_id.lstrip('/')

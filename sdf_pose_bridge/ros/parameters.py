@@ -17,28 +17,8 @@ from typing import Any, Generic, TypeVar
 
 from rclpy.parameter import Parameter
 
-from sdf_pose_bridge.ros.setting_rules import (
-    anchors_setting,
-    AUTO_KINDS,
-    directories_setting,
-    entity_setting,
-    HIGHEST_FREQUENCY,
-    HIGHEST_RATE,
-    kinds_setting,
-    LOWEST_RATE,
-    MODEL_FIELD,
-    model_name_setting,
-    optional_topic_patterns_setting,
-    path_setting,
-    patterns_setting,
-    prefix_setting,
-    PUBLISHED_KINDS,
-    refusal,
-    root_frame_setting,
-    separator_setting,
-    simulator_setting,
-    topic_patterns_setting,
-)
+from sdf_pose_bridge.ros import setting_rules as rules
+from sdf_pose_bridge.ros.cdr import POSE_TYPES
 from sdf_pose_bridge.sdformat.limits import MissingInclude
 from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.frame_ids import FrameNames
@@ -111,7 +91,7 @@ def _choice(default: Choice, description: str) -> Declaration[Choice]:
 
     def setting(value: str) -> Choice:
         if value not in known:
-            raise refusal(value, rule)
+            raise rules.refusal(value, rule)
         return type(default)(value)
 
     return Declaration(default.value, description, rule, setting)
@@ -124,12 +104,12 @@ def _rate(
 
     :param zero: the meaning of 0.0.
     """
-    rule = f'0.0 {zero}, or from {LOWEST_RATE} to {highest}'
+    rule = f'0.0 {zero}, or from {rules.LOWEST_RATE} to {highest}'
 
     def setting(value: float) -> float:
         # NaN is out of any range.
-        if value and not LOWEST_RATE <= value <= highest:
-            raise refusal(value, rule)
+        if value and not rules.LOWEST_RATE <= value <= highest:
+            raise rules.refusal(value, rule)
         return value
 
     return Declaration(
@@ -147,7 +127,7 @@ class Settings:
         'The file to publish, of SDFormat or URDF.',
         'the path of a file or of a model directory, or a file://, package:// or model:// URI, '
         'such as package://name/worlds/cell.sdf; either this or robot_description is required',
-        path_setting,
+        rules.path_setting,
     )
     robot_description = Declaration(
         '',
@@ -182,7 +162,7 @@ class Settings:
         'world',
         'The TF frame of the SDF world, or of the implicit root of a model file.',
         'not empty, no leading slash, at most 255 characters',
-        root_frame_setting,
+        rules.root_frame_setting,
     )
     anchor_models = Declaration(
         AnchorModels.AUTO.value,
@@ -191,7 +171,7 @@ class Settings:
         'a world.',
         'one of auto, all, static, none, or glob patterns of the names of models, separated by '
         'commas, such as table*,fence; static may be one of them',
-        anchors_setting,
+        rules.anchors_setting,
     )
     model = Declaration(
         '',
@@ -204,7 +184,7 @@ class Settings:
         'The name under which the model of a model file or URDF was spawned; it replaces the name '
         'in the file, and with frame_names "auto" precedes frame ids as in messages of Gazebo.',
         'the name of a model; that of the file if empty',
-        model_name_setting,
+        rules.model_name_setting,
     )
     frame_names = _choice(
         FrameNames.AUTO,
@@ -217,21 +197,21 @@ class Settings:
         'Replaces "::" in frame ids. ros_gz_bridge uses "/". To keep "::", quote it twice on the '
         'command line: -p "frame_separator:=\'::\'".',
         'not empty, at most 8 characters',
-        separator_setting,
+        rules.separator_setting,
     )
     frame_prefix = Declaration(
         '',
         'Precedes every frame id except root_frame, without a separator; also the link "world" of '
         'a URDF.',
         'at most 255 characters; a leading slash is left out, as by tf2',
-        prefix_setting,
+        rules.prefix_setting,
     )
     kinds = Declaration(
-        [name for name, kind in PUBLISHED_KINDS.items() if kind in DEFAULT_KINDS],
+        [name for name, kind in rules.PUBLISHED_KINDS.items() if kind in DEFAULT_KINDS],
         'The kinds of elements that become frames; "auto" is link for URDF, and model, link, '
         'frame and sensor for SDFormat.',
-        f'{AUTO_KINDS}, or some of {", ".join(PUBLISHED_KINDS)}',
-        kinds_setting,
+        f'{rules.AUTO_KINDS}, or some of {", ".join(rules.PUBLISHED_KINDS)}',
+        rules.kinds_setting,
     )
     pose_frame = Declaration(
         '',
@@ -245,7 +225,7 @@ class Settings:
         'glob patterns for frame ids, such as robot/* (which matches robot/arm/tool too); '
         'none if empty; at most 1000 patterns of at most 255 characters; * alone means none if '
         'there are more than 1000 frames, ?* means all',
-        patterns_setting,
+        rules.patterns_setting,
         needs_load=False,
     )
     optical_frames = _switch(
@@ -266,18 +246,19 @@ class Settings:
         'names of topics, such as joint_states or /world/{world}/model/{model}/joint_state; those '
         'with {model} or {world} count only for a world; at most 1000 of them, of at most 255 '
         'characters',
-        topic_patterns_setting,
+        rules.topic_patterns_setting,
         needs_load=False,
     )
     model_pose_topics = Declaration(
         [],
-        'Topics of poses of models that move: PoseStamped, PoseWithCovarianceStamped, '
-        'TransformStamped and Odometry, with {model} for each model; TFMessage names models in '
-        'its child frame ids. A pose is that of the model frame, or of the frame in the model '
-        'that the child frame id names. {world} stands for the world.',
+        'Topics of poses of models that move, with messages of '
+        f'{", ".join(each.rpartition("/")[2] for each in POSE_TYPES)}. {{model}} stands for each '
+        'model; TFMessage names models in its child frame ids. A pose is that of the model frame, '
+        'or of the frame in the model that the child frame id names. {world} stands for the '
+        'world.',
         'names of topics, such as /vrpn_mocap/{model}/pose; at most 1000 of them, of at most 255 '
         'characters',
-        optional_topic_patterns_setting,
+        rules.optional_topic_patterns_setting,
     )
     model_pose_frames = Declaration(
         [],
@@ -286,7 +267,7 @@ class Settings:
         'glob patterns for frame ids, such as */odom; at most 1000 patterns of at most 255 '
         'characters',
         # Compiled here, as look-ups wait for the thread that uses them.
-        lambda values: [re.compile(translate(each)) for each in patterns_setting(values)],
+        lambda values: [re.compile(translate(each)) for each in rules.patterns_setting(values)],
     )
     model_pose_placement = Declaration(
         '',
@@ -301,18 +282,18 @@ class Settings:
         'The node of a simulator that is asked for the poses of models, by its service '
         'get_entities_states of the package simulation_interfaces.',
         'the name of a node, such as /gzserver, or of its service, or /; none if empty',
-        simulator_setting,
+        rules.simulator_setting,
     )
     simulator_entity = Declaration(
-        MODEL_FIELD, 'The name in the simulator of the model that is {model} in the file.',
-        'the name of an entity, such as /World/{model}', entity_setting, needs_load=False,
+        rules.MODEL_FIELD, 'The name in the simulator of the model that is {model} in the file.',
+        'the name of an entity, such as /World/{model}', rules.entity_setting, needs_load=False,
     )
     simulator_others = _switch(
         False, 'Publishes frames of entities of the simulator that the file does not have.',
         needs_load=False,
     )
     simulator_rate = _rate(
-        'Most calls of the simulator in a second; 0.0 for none.', 'for none', HIGHEST_RATE,
+        'Most calls of the simulator in a second; 0.0 for none.', 'for none', rules.HIGHEST_RATE,
         default=20.0,
     )
     unreported_joints = _choice(
@@ -325,12 +306,12 @@ class Settings:
         'Directories searched for model:// and relative URIs, before '
         'GZ_SIM_RESOURCE_PATH and SDF_PATH.',
         'paths of directories, at most 1000; empty ones are ignored',
-        directories_setting,
+        rules.directories_setting,
     )
     publish_frequency = _rate(
         'Highest rate in Hz at which a transform that joints move is published on /tf; 0.0 for '
         'each message on joint_states.',
-        'for each message', HIGHEST_FREQUENCY,
+        'for each message', rules.HIGHEST_FREQUENCY,
     )
     ignore_timestamp = _switch(
         False,
@@ -341,7 +322,7 @@ class Settings:
     publish_rate = _rate(
         'Rate in Hz at which the transforms that joints do not move are published again, for '
         'listeners that cannot use latched topics; 0.0 to publish them once.',
-        'for never', HIGHEST_RATE,
+        'for never', rules.HIGHEST_RATE,
     )
     watch = _switch(
         True,

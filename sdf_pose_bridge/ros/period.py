@@ -68,5 +68,5 @@ class Period(Generic[_AnySource]):
 
 
 def union(parts: Sequence[NDArray[np.intp]]) -> NDArray[np.intp]:
-    """Return the rows of all parts, most often of one, in ascending order."""
-    return parts[0] if len(parts) == 1 else np.unique(np.concatenate([NO_ROWS, *parts]))
+    """Return the rows of all parts in ascending order."""
+    return np.unique(np.concatenate([NO_ROWS, *parts]))

@@ -101,7 +101,7 @@ class PublishedFrames:
             for index, frame_id in enumerate(tree.frame_ids) if frame_id in pose_topics}
         # Serialized messages, and the topic of each.
         self._fixed = [_poses_with_topics(tree, topics, topics.keys() - moved)]
-        self.moving: PublishedMovingFrames | None = None
+        self.moving: MovingTopics | None = None
         """The moving frames; None if joints move nothing."""
         self._topics = [TF_STATIC, *topics.values()]
         if has_transforms:
@@ -109,7 +109,7 @@ class PublishedFrames:
             self._topics.append(topic)
             self._fixed.insert(0, (self._transforms, [topic] * len(tree.fixed_indices)))
         if tree.moving is not None and positions is not None:
-            self.moving = PublishedMovingFrames(publishers, tree, tree.moving, positions, topics)
+            self.moving = MovingTopics(publishers, tree, tree.moving, positions, topics)
             self._topics += [TF, self.moving.transforms_topic] if has_transforms else [TF]
 
     def publish_tf_static(self) -> None:
@@ -140,7 +140,7 @@ class PublishedFrames:
         self.publish_topics()
 
 
-class PublishedMovingFrames:
+class MovingTopics:
     """
     The moving frames of a tree on their topics. One thread publishes them.
 
@@ -160,7 +160,6 @@ class PublishedMovingFrames:
         self.positions = positions
         # The last stamp of each moving transform.
         self._stamps_ns = np.full(len(moving.indices), NEVER)
-        self._newest_ns = NEVER
         self._tf = publishers.opened(TF)
         self.transforms_topic = _transforms_topic(len(moving.indices), 'moving')
         self._transforms = _records_of_transforms(tree, moving.indices)
@@ -190,9 +189,8 @@ class PublishedMovingFrames:
         :param ignore_stamps: whether it need not be newer.
         :return: the indices of those that have got it.
         """
-        if stamp_ns <= self._newest_ns and not ignore_stamps:
+        if not ignore_stamps:
             rows = rows[self._stamps_ns[rows] < stamp_ns]
-        self._newest_ns = max(self._newest_ns, stamp_ns)
         self._stamps_ns[rows] = stamp_ns
         self._transforms.set_stamps(stamp_ns, rows)
         return rows
@@ -203,7 +201,7 @@ class PublishedMovingFrames:
 
     def forget_stamps(self) -> None:
         """Accept any stamp next, after time has jumped back."""
-        self._stamps_ns[:] = self._newest_ns = NEVER
+        self._stamps_ns[:] = NEVER
         self.positions.forget_stamps()
 
     def publish_all(self) -> bool:
@@ -219,7 +217,6 @@ class PublishedMovingFrames:
         is_stamped = last_ns != NEVER
         # TF would reject other transforms with the same stamps.
         self._stamps_ns[rows[is_stamped]] = last_ns[is_stamped] + 1
-        self._newest_ns = self._stamps_ns.max()
         self._transforms.set_stamps(
             np.where(is_stamped, last_ns + 1, self._publishers.now_ns()), rows)
         self.publish_tf(rows)

@@ -22,7 +22,7 @@ from sdf_pose_bridge.ros.log_lines import count_in_words, names_in_line
 from sdf_pose_bridge.ros.model_poses import messages_from_poses
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.setting_rules import MODEL_FIELD, MOST_CHARACTERS
-from sdf_pose_bridge.ros.state_messages import Effects, Message, StateSource
+from sdf_pose_bridge.ros.state_messages import KnownEffects, Message, StateSource
 from sdf_pose_bridge.tf.joint_motion import NO_DOF
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 
@@ -142,13 +142,13 @@ class Simulator(StateSource):
         self._begin_of_cost_s = time.thread_time()
         call = self._client.call_async(self._request)
         self._calls[call] = now
-        call.add_done_callback(self._take_answer)
+        call.add_done_callback(self._receive)
 
     def _forget(self, call: Future) -> None:
         self._client.remove_pending_request(call)
         del self._calls[call]
 
-    def _take_answer(self, future: Future) -> None:
+    def _receive(self, future: Future) -> None:
         if future not in self._calls:
             return
         begin = max(self._calls.values())
@@ -219,7 +219,7 @@ class Simulator(StateSource):
     def has_answers(self) -> bool:  # noqa: D102 - as in the base class
         return bool(self._answers)
 
-    def messages(self, effects: Effects) -> Sequence[Message] | None:  # noqa: D102 - as above
+    def messages(self, effects: KnownEffects) -> Sequence[Message] | None:  # noqa: D102 - as above
         if not self._answers:
             return None
         begin_s = time.thread_time()
@@ -229,7 +229,7 @@ class Simulator(StateSource):
         self._cost_of_poses_s = time.thread_time() - begin_s
         return messages
 
-    def _poses(self, answer: Any, effects: Effects) -> dict[str, StampedPose]:
+    def _poses(self, answer: Any, effects: KnownEffects) -> dict[str, StampedPose]:
         """Return the poses of free models and other bodies by their names."""
         poses, others = {}, []
         for entity, state in zip(answer.entities, answer.states, strict=True):
@@ -247,7 +247,7 @@ class Simulator(StateSource):
         self.others = tuple(sorted(others)[:MOST_OTHERS])
         return poses
 
-    def _add_nested(self, poses: dict[str, StampedPose], effects: Effects) -> None:
+    def _add_nested(self, poses: dict[str, StampedPose], effects: KnownEffects) -> None:
         """Add nested models without a pose, which keep their places; note what else is missing."""
         positions, kept = self._positions, []
         stamp_ns = max((each.stamp_ns for each in poses.values()), default=0)

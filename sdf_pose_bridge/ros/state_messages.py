@@ -1,13 +1,11 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Messages about joints and models: their sources, and what each of them changes."""
+"""Messages about joints and models: their sources, and the effect of each of them."""
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 import re
 import time
 from typing import NamedTuple
@@ -19,11 +17,11 @@ from rclpy.subscription import Subscription
 
 from sdf_pose_bridge.geometry.poses import pose_products
 from sdf_pose_bridge.names import scoped_name
-from sdf_pose_bridge.ros.cdr import NANOSECONDS, SerializedNames
+from sdf_pose_bridge.ros.cdr import SerializedNames
 from sdf_pose_bridge.ros.log_lines import names_in_line, RareWarnings
 from sdf_pose_bridge.ros.message_counts import MessageCounts
 from sdf_pose_bridge.ros.other_publishers import names_of_nodes, publishers_of_topic
-from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
+from sdf_pose_bridge.ros.published_frames import MovingTopics
 from sdf_pose_bridge.ros.setting_rules import MOST_CHARACTERS
 from sdf_pose_bridge.tf.joint_motion import NO_DOF
 from sdf_pose_bridge.tf.joint_positions import LARGEST_POSITION, Selection
@@ -37,15 +35,6 @@ BYTES_OF_OBJECTS = 2_000
 
 _BYTES_OF_MODEL = 200
 """Size that is counted for each model of an effect, and for each frame id."""
-
-LATE_S = 1.0
-"""Time in s after which messages with old stamps are reported, if they still move nothing."""
-
-_LEAST_AGE_NS = 1_000_000
-"""Smallest difference that makes a stamp old. Stamps are the same while a simulation pauses, and
-one nanosecond newer after a reload."""
-
-
 
 @dataclass(eq=False)
 class Effect:
@@ -82,16 +71,6 @@ class Message(NamedTuple):
     """The frame of a single model whose pose is given; empty for model frames."""
 
 
-class Lateness(NamedTuple):
-    """Messages of a source that move nothing, as their stamps are old."""
-
-    line: str
-    rows: NDArray[np.intp]
-    """The transforms that have waited longest for a newer stamp."""
-    last_ns: int
-    """Their last stamp."""
-
-
 class StateSource(RareWarnings):
     """
     A source of messages about joints or models.
@@ -102,6 +81,8 @@ class StateSource(RareWarnings):
 
     subscription: Subscription | None = None
     """The subscription for whose messages to wait."""
+    is_of_joints = False
+    """Whether it has positions of joints, and not poses of models."""
 
     def __init__(self, node: Node, name: str, model: str = '') -> None:
         self.name = name
@@ -118,11 +99,11 @@ class StateSource(RareWarnings):
         """Whether messages wait that no subscription has."""
         return False
 
-    def messages(self, effects: Effects) -> Sequence[Message] | None:
+    def messages(self, effects: KnownEffects) -> Sequence[Message] | None:
         """Take a message; return what it has for each of its effects, or None if there is none."""
         raise NotImplementedError
 
-    def take(self, effects: Effects, newest: dict[Effect, Message]) -> bool:
+    def take(self, effects: KnownEffects, newest: dict[Effect, Message]) -> bool:
         """
         Take a message.
 
@@ -156,7 +137,7 @@ class StateSource(RareWarnings):
             'frame by model_pose_frames; no plugin in the file says where it is', once=True)
 
 
-class Effects:
+class KnownEffects:
     """
     The effects of messages from all sources, kept for messages with the same names.
 
@@ -167,7 +148,7 @@ class Effects:
     """
 
     def __init__(
-        self, frames: PublishedMovingFrames, lookup: PoseLookup,
+        self, frames: MovingTopics, lookup: PoseLookup,
         root_patterns: Sequence[re.Pattern[str]] = (), placement: str = '',
     ) -> None:
         self.lookup = lookup
@@ -207,9 +188,7 @@ class Effects:
             self.doubts.append(
                 f'model_pose_placement: no model that can move has {names_in_line([placement])}')
         self.last: dict[StateSource, Effect] = {}
-        """The effect of the last message on each topic of joint states, as far as it is kept."""
-        self._late: dict[StateSource, Lateness] = {}
-        self._lines_about_publishers: list[str] = []
+        """The effect of the last message on each topic of joint states, while cached."""
         self._size = 0
 
     def of_joints(self, names: SerializedNames, source: StateSource) -> Effect:
@@ -237,6 +216,11 @@ class Effects:
             found = self._effects[source, dofs] = Effect(
                 source, self._positions.selection_of_models(dofs))
         return found
+
+    @property
+    def known(self) -> Collection[Effect]:
+        """The effects that are kept."""
+        return self._effects.values()
 
     def dofs_of_others(self, source: StateSource) -> set[int]:
         """Return the degrees of freedom about which other sources have sent messages."""
@@ -312,79 +296,6 @@ class Effects:
         if message.frame_id:
             values = pose_products(np.array(self.lookup.pose(message.frame_id).pose), values)
         return values
-
-    def note_lateness(self, effect: Effect, stamp_ns: int, now_ns: int) -> None:
-        """
-        Report messages whose stamps are old, if nothing has moved their transforms for a time.
-
-        :param effect: that of one that moves nothing.
-        :param stamp_ns: its stamp, or the time of the node, in nanoseconds.
-        :param now_ns: the time of the node; 0 before the first message on ``/clock``.
-        """
-        source, now = effect.source, time.monotonic()
-        stamps_ns = self._frames.last_stamps_ns(effect.rows)
-        last_ns = int(stamps_ns.min())
-        if last_ns - stamp_ns < _LEAST_AGE_NS or last_ns != effect.late_after_ns:
-            # Others may move them, such as a second publisher with newer stamps.
-            effect.late_since, effect.late_after_ns = now, last_ns
-        elif now - effect.late_since > LATE_S and not self._is_late(source):
-            first = self._positions.names[effect.selection.changed[0]]
-            line = (
-                f'messages from {source.name} move nothing, for example {names_in_line([first])}: '
-                f'their stamps are {(last_ns - stamp_ns) / NANOSECONDS:.3f} s older than the last '
-                'one; set the clock of the publisher, and restart this node if that stamp was '
-                'wrong, or set ignore_timestamp:=true') if now_ns else (
-                'messages move nothing, as their stamps have gone back; with use_sim_time, this '
-                'needs /clock, so play the bag with "ros2 bag play --clock"')
-            is_new = all(each.line != line for each in self._late.values())
-            self._late[source] = Lateness(line, effect.rows[stamps_ns == last_ns], last_ns)
-            if is_new:
-                source.warn('stamps', lambda: line)
-
-    def problems(self, sources: Iterable[StateSource]) -> list[str]:
-        """Return a line for each source that moves nothing, and for publishers of one joint."""
-        late = [each for each in sources if self._is_late(each)]
-        lines = dict.fromkeys(self._late[each].line for each in late)
-        return [*lines, *self._lines_about_publishers]
-
-    def _is_late(self, source: StateSource) -> bool:
-        late = self._late.get(source)
-        return late is not None and bool(
-            (self._frames.last_stamps_ns(late.rows) == late.last_ns).all())
-
-    def look_at_publishers(self) -> None:
-        """
-        Report joints and models about which several publishers send messages at once.
-
-        These use several topics for two periods, as a publisher may replace another one in the
-        first; or their messages contradict each other on one topic, which has several publishers.
-        """
-        sources: dict[int, dict[str, StateSource]] = {}
-        found: dict[str, tuple[str, int, StateSource]] = {}
-        lists = Counter(each.source for each in self._effects.values() if each.counts.messages)
-        for effect in self._effects.values():
-            source, dofs, counts = effect.source, effect.selection.dofs.tolist(), effect.counts
-            if dofs and counts.have_several_publishers:
-                nodes = source.publishers()
-                # Values alone prove little, so each list of names may have its own publisher.
-                if len(nodes) > (lists[source] if counts.number is None else 1):
-                    found[source.name] = f', among {names_in_line(nodes)}', dofs[0], source
-            counts.end_period()
-            for dof in dofs if counts.periods > 1 else ():
-                sources.setdefault(dof, {})[source.name] = source
-        for dof, by_name in sources.items():
-            if len(by_name) > 1:
-                found.setdefault(' and '.join(sorted(by_name)), ('', dof, by_name.popitem()[1]))
-        self._lines_about_publishers = []
-        for topics, (nodes_of_topic, dof, source) in found.items():
-            what, setting = ('model', 'model_pose_topics') if self._positions.is_model(dof) else (
-                'joint', 'joint_states_topics')
-            line = (
-                f'messages about {what} {names_in_line([self._positions.names[dof]])} come from '
-                f'several publishers at once on {topics}{nodes_of_topic}; the newest stamp '
-                f'counts, so stop all but one, or leave a topic out of {setting}')
-            self._lines_about_publishers.append(line)
-            source.warn_once('publishers', [topics], partial(str, line))
 
     def _make_room(self, size: int) -> None:
         """Forget everything if it would be too much."""

@@ -11,11 +11,12 @@ from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
 from sdf_pose_bridge.ros.background import result_from_executor
+from sdf_pose_bridge.ros.cdr import JOINT_STATE, POSE_TYPES
 from sdf_pose_bridge.ros.log_lines import line_from_text, names_in_line
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.simulator import Simulator
 from sdf_pose_bridge.ros.state_messages import StateSource
-from sdf_pose_bridge.ros.state_topic import JOINT_STATE, POSE_TYPES, StateTopic, TopicKey
+from sdf_pose_bridge.ros.state_topic import StateTopic, TopicKey
 from sdf_pose_bridge.ros.topic_names import StateTopics
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 
@@ -55,13 +56,8 @@ class StateSources:
         return (*self._topics.values(), *([self.simulator] if self.simulator else []))
 
     @property
-    def joint_state_topics(self) -> list[StateTopic]:
-        """The topics of joint states."""
-        return [each for key, each in self._topics.items() if key.type_name == JOINT_STATE]
-
-    @property
     def wanted_count(self) -> int:
-        """The number of sources that are wanted."""
+        """The number of sources that are wanted; any thread may ask for it."""
         wanted = self._wanted
         return len(wanted.joint_states) + len(wanted.model_poses) + (self.simulator is not None)
 

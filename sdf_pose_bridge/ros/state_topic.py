@@ -5,47 +5,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+import importlib
 from typing import NamedTuple
 
-from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped, TransformStamped
-from nav_msgs.msg import Odometry
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.qos import QoSPolicyKind, QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
-from sensor_msgs.msg import JointState
-from tf2_msgs.msg import TFMessage
 
-from sdf_pose_bridge.ros.cdr import joint_state_from_bytes, poses_from_bytes
+from sdf_pose_bridge.ros.cdr import (
+    joint_state_from_bytes,
+    POSE_TYPES,
+    poses_from_bytes,
+    PoseType,
+)
 from sdf_pose_bridge.ros.model_poses import messages_from_poses
-from sdf_pose_bridge.ros.state_messages import Effects, Message, StateSource
+from sdf_pose_bridge.ros.state_messages import KnownEffects, Message, StateSource
 from sdf_pose_bridge.ros.wait_set import NoExecutor, take_message
 
 MOST_WAITING = 100
 """Largest number of messages that wait in a subscription; then new ones replace the oldest."""
-
-
-class PoseType(NamedTuple):
-    """A type of messages with poses of models."""
-
-    message_class: type
-    has_child: bool
-    """Whether it has a child frame id."""
-    is_sequence: bool = False
-    """Whether it has many poses, each of the model that its child frame id names."""
-
-
-POSE_TYPES = {
-    'geometry_msgs/msg/PoseStamped': PoseType(PoseStamped, has_child=False),
-    'geometry_msgs/msg/PoseWithCovarianceStamped': PoseType(
-        PoseWithCovarianceStamped, has_child=False),
-    'geometry_msgs/msg/TransformStamped': PoseType(TransformStamped, has_child=True),
-    'nav_msgs/msg/Odometry': PoseType(Odometry, has_child=True),
-    'tf2_msgs/msg/TFMessage': PoseType(TFMessage, has_child=True, is_sequence=True),
-}
-
-
-JOINT_STATE = 'sensor_msgs/msg/JointState'
 
 
 class TopicKey(NamedTuple):
@@ -56,7 +35,7 @@ class TopicKey(NamedTuple):
     model: str
     """The top-level model of joint states, or the free model of poses; empty for any."""
     type_name: str
-    """:data:`JOINT_STATE`, or one of :data:`POSE_TYPES`."""
+    """``JOINT_STATE``, or one of :data:`POSE_TYPES`."""
 
 
 class StateTopic(StateSource):
@@ -64,11 +43,12 @@ class StateTopic(StateSource):
 
     def __init__(self, node: Node, key: TopicKey) -> None:
         self._pose_type = POSE_TYPES.get(key.type_name)
+        self.is_of_joints = self._pose_type is None
+        package, _, name = key.type_name.split('/')
         # A best effort and volatile subscription is compatible with every publisher, so there is
         # nothing to report unless parameters change that.
         self.subscription = node.create_subscription(
-            JointState if self._pose_type is None else self._pose_type.message_class,
-            key.name, lambda _: None,
+            getattr(importlib.import_module(f'{package}.msg'), name), key.name, lambda _: None,
             QoSProfile(depth=MOST_WAITING, reliability=ReliabilityPolicy.BEST_EFFORT),
             callback_group=NoExecutor(), raw=True,
             event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
@@ -77,14 +57,14 @@ class StateTopic(StateSource):
                 QoSPolicyKind.RELIABILITY, QoSPolicyKind.DURABILITY)))
         super().__init__(node, self.subscription.topic_name, key.model)
 
-    def messages(self, effects: Effects) -> Sequence[Message] | None:  # noqa: D102 - as above
+    def messages(self, effects: KnownEffects) -> Sequence[Message] | None:  # noqa: D102 - as above
         taken = take_message(self.subscription)
         if taken is None:
             return None
         data, self.number = taken
         return self.read(data, effects)
 
-    def read(self, data: bytes, effects: Effects) -> Sequence[Message]:
+    def read(self, data: bytes, effects: KnownEffects) -> Sequence[Message]:
         """Read a serialized message; return nothing, with a warning, if it cannot be used."""
         try:
             if self._pose_type is None:
@@ -95,7 +75,7 @@ class StateTopic(StateSource):
             self.warn('message', lambda: f'a message on {self.name} is ignored: {reason}')
             return ()
 
-    def _joint_states(self, data: bytes, effects: Effects) -> Message:
+    def _joint_states(self, data: bytes, effects: KnownEffects) -> Message:
         effect = effects.last.get(self)
         stamp_ns, names, positions = joint_state_from_bytes(
             data, None if effect is None else effect.names)
@@ -103,9 +83,8 @@ class StateTopic(StateSource):
             effect = effects.of_joints(names, self)
         return Message(effect, positions, stamp_ns)
 
-    def _poses(self, data: bytes, pose_type: PoseType, effects: Effects) -> Sequence[Message]:
-        poses = poses_from_bytes(
-            data, has_child=pose_type.has_child, is_sequence=pose_type.is_sequence)
+    def _poses(self, data: bytes, pose_type: PoseType, effects: KnownEffects) -> Sequence[Message]:
+        poses = poses_from_bytes(data, pose_type)
         if pose_type.is_sequence:
             return messages_from_poses(poses, self, effects, None, effects.placements)
         dof = effects.models.get(self.model) if self.model else effects.only_model

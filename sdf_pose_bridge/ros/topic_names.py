@@ -63,26 +63,23 @@ def pose_topics_from_patterns(
         one of them matches the whole of its id. ``*`` alone chooses at most ``MOST_BY_DEFAULT``.
     :param node_name: full name of the node, which precedes the names.
     """
-    if list(patterns) == ['*'] and len(frame_ids) > MOST_BY_DEFAULT:
-        return PoseTopics(
-            {},
-            f'no ~/poses/... topics: {len(frame_ids)} frames are more than {MOST_BY_DEFAULT}; '
-            'name those that you want in pose_topics, such as "robot/*", or ask for all with '
-            '"?*"')
     limit = min(LONGEST_NAME, LONGEST_FULL_NAME - len(f'{node_name}/poses/'))
-    if limit < SHORTEST_LIMIT:
-        return PoseTopics(
-            {},
-            'no ~/poses/... topics: the name of the node and its namespace are so long that '
-            'the names of topics would be longer than the middleware allows')
     with_wildcards = [pattern for pattern in patterns if _WILDCARD.search(pattern)]
-    steps = sum(map(len, with_wildcards)) * sum(map(len, frame_ids))
-    if steps > MOST_STEPS:
-        return PoseTopics(
-            {},
-            f'no ~/poses/... topics: to compare {len(with_wildcards)} patterns with '
-            f'{len(frame_ids)} frame ids takes too long; name frames without wildcards in '
-            'pose_topics, or use fewer patterns')
+    reason = ''
+    if list(patterns) == ['*'] and len(frame_ids) > MOST_BY_DEFAULT:
+        reason = (
+            f'{len(frame_ids)} frames are more than {MOST_BY_DEFAULT}; name those that you want '
+            'in pose_topics, such as "robot/*", or ask for all with "?*"')
+    elif limit < SHORTEST_LIMIT:
+        reason = (
+            'the name of the node and its namespace are so long that the names of topics would be '
+            'longer than the middleware allows')
+    elif sum(map(len, with_wildcards)) * sum(map(len, frame_ids)) > MOST_STEPS:
+        reason = (
+            f'to compare {len(with_wildcards)} patterns with {len(frame_ids)} frame ids takes too '
+            'long; name frames without wildcards in pose_topics, or use fewer patterns')
+    if reason:
+        return PoseTopics({}, f'no ~/poses/... topics: {reason}')
     chosen: set[str] = set()
     unmatched = []
     known = set(frame_ids)
@@ -181,16 +178,14 @@ def check_number_of_topics(settings: Settings, positions: JointPositions | None)
     :param positions: the joints and the free models; None if nothing moves.
     :raises SettingsError: if there would be.
     """
-    models = {
-        'joint_states_topics': (settings.joint_states_topics, () if positions is None
-                                else positions.models, 'models that have moving joints'),
-        'model_pose_topics': (settings.model_pose_topics, () if positions is None
-                              else positions.free_models, 'models that can move')}
-    for parameter, (patterns, found, what) in models.items():
-        count = sum(len(found) if MODEL_FIELD in each else 1 for each in dict.fromkeys(patterns))
+    for parameter, models, what in () if positions is None else (
+            ('joint_states_topics', positions.models, 'models that have moving joints'),
+            ('model_pose_topics', positions.free_models, 'models that can move')):
+        patterns = dict.fromkeys(settings.values[parameter])
+        count = sum(len(models) if MODEL_FIELD in each else 1 for each in patterns)
         if count > MOST_BY_DEFAULT:
             sentence = (
-                f'{parameter} names {count} topics with {len(found)} {what}, and at most '
+                f'{parameter} names {count} topics with {len(models)} {what}, and at most '
                 f'{MOST_BY_DEFAULT} are allowed; set it without {MODEL_FIELD}, or publish some of '
                 'the models by another node')
             raise SettingsError([sentence])

@@ -10,11 +10,12 @@ way and uses the same private names. rclpy 7 to 10 have all of them.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 import math
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.context import Context
+from rclpy.exceptions import InvalidHandle
 from rclpy.guard_condition import GuardCondition
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.subscription import Subscription
@@ -46,8 +47,9 @@ class WaitSet:
         self._held = ExitStack()
 
     def wake(self) -> None:
-        """End the current call of :meth:`wait`, or the next one."""
-        self._guard_condition.trigger()
+        """End the current call of :meth:`wait`, or the next one, unless it is closed."""
+        with suppress(InvalidHandle):
+            self._guard_condition.trigger()
 
     def wait(self, subscriptions: Sequence[Subscription], timeout_s: float) -> list[int]:
         """
@@ -68,8 +70,7 @@ class WaitSet:
         wait_set.wait(_FOREVER if math.isinf(timeout_s) else int(timeout_s * NANOSECONDS))
         ready = set(wait_set.get_ready_entities('subscription'))
         return [
-            index for index, each in enumerate(subscriptions) if each.handle.pointer in ready
-        ] if ready else []
+            index for index, each in enumerate(subscriptions) if each.handle.pointer in ready]
 
     def close(self) -> None:
         """Destroy it. Subscriptions that were destroyed before are released."""

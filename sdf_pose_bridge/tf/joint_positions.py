@@ -258,15 +258,15 @@ class JointPositions:
             self._stamps_of_models_ns[model] = max(self._stamps_of_models_ns[model], stamp_ns)
         changed = self.values.copy()
         changed[coordinates] = new
-        self._stamps_of_values_ns[dofs] = stamp_ns
         is_changed = set(dofs.tolist())
         for dof, leader, mimic in selection.followers:
             value = mimic.multiplier * (changed[leader] - mimic.reference) + mimic.offset
             if leader in is_changed and abs(value) <= LARGEST_POSITION:
                 changed[dof] = value
-                self._stamps_of_values_ns[dof] = stamp_ns
                 is_changed.add(dof)
+        # In this order, as another thread may look up poses meanwhile.
         self.values = changed
+        self._stamps_of_values_ns[[*is_changed]] = stamp_ns
         if self.reported_count < len(self.names):
             self._count_reported()
         return invalid

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Messages are read by rclpy as what they were made of, and joint states are read as by rclpy."""
 
+import importlib
 import struct
 
 import numpy as np
@@ -14,8 +15,10 @@ from hypothesis import strategies as st
 from sdf_pose_bridge.ros.cdr import (
     joint_state_from_bytes,
     MOST_BYTES,
+    POSE_TYPES,
     poses_from_bytes,
     StampedRecords,
+    TF_MESSAGE,
 )
 
 STAMPS = st.integers(0, 2**31 * 10**9 - 1)
@@ -224,59 +227,57 @@ POSE = (1.0, 2.0, 3.0, 0.5, -0.5, 0.5, -0.5)
 
 
 def pose_message(type_name, frame_id, child='', pose=POSE, sec=7):
-    """Return a serialized message with one pose; with two equal ones in a TFMessage."""
+    """Return a serialized message with one pose, or with two equal ones, and the first of them."""
     pytest.importorskip('rclpy', reason='needs ROS 2')
-    from geometry_msgs import msg as geometry
-    from nav_msgs.msg import Odometry
+    from geometry_msgs.msg import TransformStamped
     from rclpy.serialization import serialize_message
-    from tf2_msgs.msg import TFMessage
-    one = Odometry() if type_name == 'Odometry' else getattr(
-        geometry, type_name.replace('TFMessage', 'TransformStamped'))()
-    one.header.frame_id, one.header.stamp.sec, one.header.stamp.nanosec = frame_id, sec, 8
+    package, _, name = type_name.split('/')
+    one = message = getattr(importlib.import_module(f'{package}.msg'), name)()
+    if hasattr(message, 'transforms'):
+        one = TransformStamped()
+        message.transforms = [one] * 2
+    stamp_ns = 0
+    if hasattr(one, 'header'):
+        one.header.frame_id, one.header.stamp.sec, one.header.stamp.nanosec = frame_id, sec, 8
+        stamp_ns = sec * 10**9 + 8
     if hasattr(one, 'child_frame_id'):
         one.child_frame_id = child
-    if hasattr(one, 'transform'):
-        places = one.transform.translation, one.transform.rotation
-    else:
-        found = one.pose if type_name == 'PoseStamped' else one.pose.pose
-        places = found.position, found.orientation
+    found = one
+    while hasattr(found, 'pose'):
+        found = found.pose
+    places = (one.transform.translation, one.transform.rotation) if hasattr(
+        one, 'transform') else (found.position, found.orientation)
     for place, values in zip(places, (pose[:3], pose[3:]), strict=True):
         for name, value in zip('xyzw', values, strict=False):
             setattr(place, name, value)
-    return serialize_message(TFMessage(transforms=[one] * 2) if type_name == 'TFMessage' else one)
+    return serialize_message(message), (
+        stamp_ns, frame_id if stamp_ns else '', getattr(one, 'child_frame_id', ''), pose)
 
 
-TYPES = {
-    'PoseStamped': {'has_child': False}, 'PoseWithCovarianceStamped': {'has_child': False},
-    'TransformStamped': {'has_child': True}, 'Odometry': {'has_child': True},
-    'TFMessage': {'has_child': True, 'is_sequence': True}}
-
-
-@pytest.mark.parametrize('type_name', TYPES)
+@pytest.mark.parametrize('type_name', POSE_TYPES)
 @given(frame_id=NAMES, child=NAMES)
 def test_poses_are_those_of_the_message(type_name, frame_id, child):
-    found = list(poses_from_bytes(
-        pose_message(type_name, frame_id, child), **TYPES[type_name]))
-    one = (7_000_000_008, frame_id, child if TYPES[type_name]['has_child'] else '', POSE)
-    assert found == [one] * (2 if type_name == 'TFMessage' else 1)
+    data, one = pose_message(type_name, frame_id, child)
+    assert list(poses_from_bytes(data, POSE_TYPES[type_name])) == [one] * (
+        2 if type_name == TF_MESSAGE else 1)
 
 
-@pytest.mark.parametrize('type_name', TYPES)
+@pytest.mark.parametrize('type_name', POSE_TYPES)
 def test_a_message_with_a_pose_that_ends_too_early_is_refused(type_name):
-    whole = pose_message(type_name, 'abc', 'de')
-    for length in range(len(whole) if 'Transform' in type_name else 70):
+    whole, _ = pose_message(type_name, 'abc', 'de')
+    for length in range(len(whole) if 'Transform' in type_name else 60):
         with pytest.raises(ValueError, match=r'ends too early|not plain CDR'):
-            list(poses_from_bytes(whole[:length], **TYPES[type_name]))
+            list(poses_from_bytes(whole[:length], POSE_TYPES[type_name]))
 
 
 @pytest.mark.parametrize('place', [4, 12])
 def test_a_length_beyond_the_message_is_refused(place):
-    whole = pose_message('TFMessage', 'abc', 'de')
+    whole, _ = pose_message(TF_MESSAGE, 'abc', 'de')
     broken = whole[:place] + struct.pack('<I', 2**32 - 1) + whole[place + 4:]
     with pytest.raises(ValueError, match=r'ends too early|nanosec'):
-        list(poses_from_bytes(broken, has_child=True, is_sequence=True))
+        list(poses_from_bytes(broken, POSE_TYPES[TF_MESSAGE]))
 
 
 def test_a_negative_time_of_a_pose_is_refused():
     with pytest.raises(ValueError, match='sec must not be negative'):
-        list(poses_from_bytes(pose_message('PoseStamped', '', sec=-1), has_child=False))
+        list(poses_from_bytes(pose_message(TF_MESSAGE, '', sec=-1)[0], POSE_TYPES[TF_MESSAGE]))

@@ -10,10 +10,10 @@ from diagnostic_msgs.msg import DiagnosticStatus
 
 from sdf_pose_bridge.ros.diagnostics import Diagnostics, status_from_scene
 from sdf_pose_bridge.ros.given_parameters import settings_from_node
-from sdf_pose_bridge.ros.log_lines import Unreported
+from sdf_pose_bridge.ros.state_report import StateReport
 from sdf_pose_bridge.tf.loading import loaded_scene_from_request
 
-NOTHING_MISSING = Unreported()
+NOTHING_MISSING = StateReport()
 LOADED_AT_NS = 1767323045_678900000
 GOOD = '<sdf version="1.10"><model name="m"><link name="l"/></model></sdf>'
 LIGHT = '<light name="i" type="point"><pose relative_to="x"/></light>'
@@ -21,13 +21,13 @@ LIGHT = '<light name="i" type="point"><pose relative_to="x"/></light>'
 
 @pytest.fixture
 def status_of(make_node, tmp_path):
-    def status(text, *failure, unreported=NOTHING_MISSING):
+    def status(text, *failure, states=NOTHING_MISSING):
         path = tmp_path / 'cell.sdf'
         path.write_text(text, encoding='utf-8')
         node = make_node('bridge', '-p', f'sdf_file:={path}', '-p', 'root_frame:=map')
         loaded = loaded_scene_from_request(settings_from_node(node).load_request)
         return status_from_scene(
-            loaded._replace(read_since_ns=LOADED_AT_NS), failure, unreported, 'left/bridge')
+            loaded._replace(read_since_ns=LOADED_AT_NS), failure, states, 'left/bridge')
     return status
 
 
@@ -50,7 +50,7 @@ def test_warnings_of_what_is_served_are_counted(status_of, count, words):
 
 
 def test_joints_that_nobody_reports_are_a_warning(status_of):
-    status = status_of(GOOD, unreported=Unreported(2, 'arm/elbow'))
+    status = status_of(GOOD, states=StateReport(['arm/elbow', 'arm/wrist']))
     assert status.level == DiagnosticStatus.WARN
     assert status.message.startswith(
         'no message has named 2 joints yet, for example "arm/elbow";')
@@ -60,7 +60,7 @@ def test_joints_that_nobody_reports_are_a_warning(status_of):
 
 
 def test_messages_with_old_stamps_are_a_warning(status_of):
-    status = status_of(GOOD, unreported=Unreported(problems=['from /a', 'from /b']))
+    status = status_of(GOOD, states=StateReport(problems=['from /a', 'from /b']))
     assert (status.level, status.message) == (DiagnosticStatus.WARN, 'from /a; from /b')
     values = {value.key: value.value for value in status.values}
     assert values['problems of topics'] == '2'

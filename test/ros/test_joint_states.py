@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What messages of joint states put on ``/tf``: which frames, with which stamp, and how often."""
 
+import concurrent.futures
 import math
 import threading
 import time
@@ -22,7 +23,7 @@ from std_msgs.msg import Header
 from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge import load_text
-from sdf_pose_bridge.ros import joint_states, state_messages
+from sdf_pose_bridge.ros import joint_states, message_problems
 from sdf_pose_bridge.ros.given_parameters import settings_from_values
 from sdf_pose_bridge.ros.joint_states import (
     JointStates,
@@ -262,10 +263,10 @@ def test_a_joint_that_no_message_has_named_moves_nothing(following):
 def test_joints_that_stay_unreported_are_counted_once_and_then_that_none_is(following, capfd):
     following.start()
     following.connect()
-    following.wait(lambda: following.states.unreported.number)
-    assert following.states.unreported[:3] == (2, 'grip', ['/joint_states'])
+    following.wait(lambda: following.states.report().joints)
+    assert following.states.report()[:3] == (['grip', 'lift'], [], ['/joint_states'])
     following.published((FIRST, {'lift': 0.0, 'grip': 0.0}), (FIRST + 1, {'turn': 0.0}))
-    assert following.states.unreported.number == 0
+    assert following.states.report().joints == []
     log = capfd.readouterr().err
     assert log.count('no message has named 2 joints yet, for example "grip"') == 1
     assert log.count('all joints have been reported now') == 1
@@ -280,7 +281,7 @@ def test_stamps_that_go_back_are_reported_once_and_until_a_joint_of_them_moves_a
         sec += 1
         arm.send(FIRST + 50, {'turn': 0.1, 'lift': 0.1})
         arm.send(sec, {'lift': 0.1})
-        return arm.states.unreported.problems
+        return arm.states.report().problems
 
     sec = FIRST + 100
     arm.wait(is_late)
@@ -289,10 +290,10 @@ def test_stamps_that_go_back_are_reported_once_and_until_a_joint_of_them_moves_a
         'older than the last one;')
     arm.send(FIRST, {'turn': 0.1})
     arm.published((sec + 1, {'lift': 0.1}))
-    assert arm.states.unreported.problems[0].startswith(line)
+    assert arm.states.report().problems[0].startswith(line)
     sec += 1
     arm.published((sec + 1, {'turn': 0.5, 'grip': 0.5}))
-    assert arm.states.unreported.problems == []
+    assert arm.states.report().problems == []
     assert capfd.readouterr().err.count(line) == 1
 
 
@@ -301,7 +302,7 @@ def test_stamps_that_go_back_are_reported_once_and_until_a_joint_of_them_moves_a
     ids=['two publishers', 'a pause', 'ignored'])
 def test_stamps_that_do_not_stop_a_frame_are_not_reported(
         following, monkeypatch, rule, newer, older):
-    monkeypatch.setattr(state_messages, 'LATE_S', 0.0)
+    monkeypatch.setattr(message_problems, 'LATE_S', 0.0)
     following.start(rule=rule)
     following.connect()
     following.published((FIRST, {'turn': 0.5}))
@@ -311,7 +312,7 @@ def test_stamps_that_do_not_stop_a_frame_are_not_reported(
         following.send(sec, {'turn': 0.5, 'lift': 0.5} if newer else {'turn': 0.5})
         following.send(sec - newer + older, {'turn': 0.5})
     following.published((sec, {'turn': 0.25}), (sec + 1, {'grip': 0.75}))
-    assert not following.states.unreported.problems
+    assert not following.states.report().problems
 
 
 def test_a_message_without_a_stamp_gets_the_time_of_the_node(arm):
@@ -335,8 +336,7 @@ def test_a_look_up_sees_the_messages_that_came_before_it(arm):
     goes_on, seen, arrived = threading.Event(), [], []
     other = arm.listener.create_subscription(JointState, '/joint_states', arrived.append, 10)
     arm.wait(lambda: other.get_publisher_count())
-    arm.states._calls.append(lambda: goes_on.wait(DEADLINE_S))
-    arm.states._wake()
+    arm.states._call(lambda: goes_on.wait(DEADLINE_S))
 
     def has_arrived():
         arm.send(FIRST, {'turn': 0.5})
@@ -353,10 +353,9 @@ def test_a_look_up_sees_the_messages_that_came_before_it(arm):
 
 def test_a_thread_that_does_not_answer_is_an_error(arm, monkeypatch):
     goes_on = threading.Event()
-    arm.states._calls.append(goes_on.wait)
-    arm.states._wake()
+    arm.states._call(goes_on.wait)
     monkeypatch.setattr(joint_states, 'LONGEST_ANSWER_S', 0.0)
-    with pytest.raises(TimeoutError):
+    with pytest.raises(concurrent.futures.TimeoutError):
         arm.states.wait()
     goes_on.set()
 
@@ -419,7 +418,7 @@ def test_what_was_created_for_it_is_destroyed_with_it(following):
 def test_it_ends_with_the_node(following):
     following.start()
     following.node.destroy_node()
-    following.states._wake()
+    following.states._wait_set.wake()
     following.states._thread.join(DEADLINE_S)
     assert not following.states._thread.is_alive()
 
@@ -502,12 +501,12 @@ def test_a_bag_that_begins_again_without_a_clock_is_one_line_with_a_cure(followi
     def is_late(*topics):
         for topic in topics:
             following.send(FIRST, {'turn': 0.1}, topic)
-        return following.states.unreported.problems
+        return following.states.report().problems
 
     following.wait(lambda: is_late('/a/j', '/b/j'))
     following.published((FIRST + 200, {'turn': 0.5}, '/a/j'))
     following.wait(lambda: is_late('/b/j'))
-    line, = following.states.unreported.problems
+    line, = following.states.report().problems
     assert 'play the bag with "ros2 bag play --clock"' in line
     assert capfd.readouterr().err.count('messages move nothing') == 1
 
@@ -560,8 +559,9 @@ def test_too_many_messages_of_one_robot_leave_time_for_another(two_arms):
 
 def test_an_unreported_joint_is_named_with_the_topics_that_can_name_it(following):
     following.start(TWO_ARMS, topics=TWO_TOPICS)
-    following.wait(lambda: following.states.unreported.number)
-    assert following.states.unreported[:3] == (6, 'a/turn', ['/a/j'])
+    following.wait(lambda: following.states.report().joints)
+    report = following.states.report()
+    assert (len(report.joints), report.joints[0], report.topics) == (6, 'a/turn', ['/a/j'])
 
 
 def test_topics_come_and_go_with_the_frames(following):

@@ -22,7 +22,6 @@ from sdf_pose_bridge.ros.log_lines import (
     line_about_gazebo,
     line_about_joints_at_rest,
     line_about_prefix,
-    line_about_unreported,
     line_from_text,
     lines_about_lost_frames,
     lines_about_scene,
@@ -30,9 +29,9 @@ from sdf_pose_bridge.ros.log_lines import (
     lines_from_warnings,
     MOST_LINES,
     text_about_defect,
-    Unreported,
 )
 from sdf_pose_bridge.ros.parameters import SettingsError
+from sdf_pose_bridge.ros.state_report import StateReport
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.anchors import AnchorModels
@@ -121,8 +120,8 @@ def test_names_and_paths_cannot_write_lines_of_their_own(tmp_path):
     empty = tree_of(world_file(''))
     lines = [
         *lines_about_scene(loaded), *lines_about_lost_frames(loaded.tree, empty),
-        line_about_unreported(Unreported(1, name)),
-        line_about_unreported(Unreported(models=[name])),
+        StateReport([name]).line_about_unreported(),
+        StateReport(models=[name]).line_about_unreported(),
         line_about_joints_at_rest(loaded.scene, '', FrameNames.AUTO),
         *lines_from_error(SettingsError([name])), *lines_from_error(ValueError(name)),
         *lines_from_warnings([name])]
@@ -199,13 +198,6 @@ def test_frames_that_tf_cannot_forget_are_named():
     assert detached.startswith('1 frame without a parent now')
     assert detached.endswith('"a/l"')
     assert lines_about_lost_frames(tree('a', AnchorModels.NONE), tree('')) == []
-
-
-def test_joints_that_nobody_reports_are_counted():
-    line = line_about_unreported(Unreported(3, 'j0', ('/a', '/b')))
-    assert line.startswith('no message has named 3 joints yet, for example "j0";')
-    assert line.endswith(
-        ' until a message on /a or /b names the joint, or with unreported_joints:=zero')
 
 
 def test_joints_that_stand_still_are_counted_where_they_are_published():

@@ -1,18 +1,12 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Which of several messages counts, and publishers that send at once."""
+"""Which of several messages counts, and what it moves."""
 
-from deadline import wait_until
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from geometry_msgs.msg import PoseStamped
-from moving_models import Models, TURNED
-
-from sdf_pose_bridge.ros.cdr import StampedPose
-from sdf_pose_bridge.ros.model_poses import messages_from_poses
-from sdf_pose_bridge.ros.state_messages import StateSource
+from moving_models import Models
 
 
 @pytest.fixture(name='models')
@@ -20,13 +14,14 @@ def make_models(make_node):
     return Models(make_node('bridge'))
 
 
-def test_the_newest_message_of_a_model_counts(models):
-    waiting = [models.read(stamp_ns=stamp_ns) for stamp_ns in (5, 6, 4)]
+@pytest.mark.parametrize(('stamps_ns', 'newest_ns'), [((4, 6, 5), 6), ((6, 0), 0)])
+def test_the_newest_message_of_a_model_counts(models, stamps_ns, newest_ns):
+    waiting = [models.read(stamp_ns=stamp_ns) for stamp_ns in reversed(stamps_ns)]
     models.source.messages = lambda _effects: waiting.pop() if waiting else None
     newest = {}
     while models.source.take(models.effects, newest):
         pass
-    assert [each.stamp_ns for each in newest.values()] == [6]
+    assert [each.stamp_ns for each in newest.values()] == [newest_ns]
 
 
 def test_a_pose_moves_the_link_at_which_the_model_hangs(models):
@@ -34,67 +29,3 @@ def test_a_pose_moves_the_link_at_which_the_model_hangs(models):
     models.positions.update(message.effect.selection, message.values, 5)
     frames = models.effects.rows(message.effect)
     assert len(frames) == 1
-
-
-# Publishers
-
-@pytest.fixture(name='look')
-def make_look(models, make_node):
-    """
-    Sends messages and returns the lines about publishers; ``look(*periods)``.
-
-    A period has messages, each as a source, the number of its publisher and a model.
-    """
-    other = make_node('other')
-    publishers = [other.create_publisher(PoseStamped, '/poses', 10) for _ in range(2)]
-    sources = {'poses': models.source, 'alone': StateSource(models.source._node, '/alone')}
-    publishers.append(other.create_publisher(PoseStamped, '/alone', 10))
-    wait_until(lambda: [len(each.publishers()) for each in sources.values()] == [2, 1])
-
-    def look(*periods):
-        for period in periods:
-            for name, number, child in period:
-                source = sources[name]
-                source.number = number
-                source.messages = lambda effects, source=source, child=child: (
-                    messages_from_poses(
-                        [StampedPose(5, '', child, TURNED)], source, effects))
-                source.take(models.effects, {})
-            models.effects.look_at_publishers()
-        return models.effects.problems([])
-    return look
-
-
-BOTH = [('poses', 1, 'a'), ('alone', 1, 'a')]
-TURNS = [('poses', number, 'a') for number in (7, 1, 8, 2, 9, 3)]
-
-
-def test_publishers_of_one_model_on_two_topics_are_reported_as_long_as_it_lasts(look, capfd):
-    line = 'messages about model "a" come from several publishers at once on /alone and /poses; '
-    assert not look(BOTH)
-    found = look(BOTH)
-    assert len(found) == 1
-    assert found[0].startswith(line)
-    assert not look(BOTH[:1])
-    look(BOTH, BOTH)
-    assert capfd.readouterr().err.count(line) == 1
-
-
-def test_publishers_of_one_model_on_one_topic_are_reported(look):
-    line = 'messages about model "a" come from several publishers at once on /poses, among "/'
-    found = look(TURNS)
-    assert len(found) == 1
-    assert found[0].startswith(line)
-    assert not look([])
-
-
-@pytest.mark.parametrize('periods', [
-    [BOTH[:1], BOTH, BOTH[1:]],
-    [[('alone', number, 'a') for _, number, _ in TURNS]],
-    [[('poses', None, 'a')] * 6] * 2,
-    [[('poses', number, 'a') for number in (7, 8, 1, 2, 3)]] * 2,
-    [[(*each, ('a', 'a::b')[row % 2]) for row, (*each, _) in enumerate(TURNS)]],
-], ids=['replaced', 'one publisher', 'no numbers', 'restarted', 'different models'])
-def test_publishers_that_are_not_several_at_once_are_not_reported(look, periods):
-    for period in periods:
-        assert not look(period)

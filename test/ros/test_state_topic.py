@@ -15,11 +15,11 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
 
 from sdf_pose_bridge import load_text
-from sdf_pose_bridge.ros.cdr import SerializedNames
+from sdf_pose_bridge.ros.cdr import JOINT_STATE, SerializedNames
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
-from sdf_pose_bridge.ros.state_messages import BYTES_OF_OBJECTS, Effects, MOST_BYTES
-from sdf_pose_bridge.ros.state_topic import JOINT_STATE, StateTopic, TopicKey
+from sdf_pose_bridge.ros.state_messages import BYTES_OF_OBJECTS, KnownEffects, MOST_BYTES
+from sdf_pose_bridge.ros.state_topic import StateTopic, TopicKey
 from sdf_pose_bridge.tf.joint_positions import JointPositions, UnreportedJoints
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
@@ -40,7 +40,7 @@ class Robots:
         tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
         self._node = node
         self.positions = JointPositions(scene, tree.moving.motion, unreported=unreported)
-        self.effects = Effects(
+        self.effects = KnownEffects(
             PublishedFrames(Publishers(node), tree, self.positions, {}).moving,
             PoseLookup(scene, tree, self.positions))
 
@@ -114,10 +114,11 @@ def test_names_are_kept_for_a_topic_whatever_aligns_them(robots):
 @pytest.mark.parametrize('unreported', list(UnreportedJoints))
 def test_names_move_their_transforms_and_those_of_joints_at_zero(make_node, unreported):
     robots = Robots(make_node('bridge'), unreported)
+    topic = robots.topic('j', '')
 
     def rows(*names):
         data = joint_state(**dict.fromkeys(names, 0.0))
-        (message,) = robots.topic('j', '').read(data, robots.effects)
+        (message,) = topic.read(data, robots.effects)
         robots.positions.update(message.effect.selection, message.values, 5)
         return robots.effects.rows(message.effect).tolist()
 
@@ -133,9 +134,11 @@ def test_names_move_their_transforms_and_those_of_joints_at_zero(make_node, unre
 def test_all_names_together_take_a_limited_number_of_bytes(robots, size):
     topic, effects = robots.topic(), set()
     count = 2 * MOST_BYTES // (size + BYTES_OF_OBJECTS)
+    robots.effects.of_joints(SerializedNames(('turn',), b''), robots.topic('a/k'))
     for _ in range(2):
         for number in range(count):
             names = SerializedNames((str(number) * size,), b'x' * size)
             effects.add(robots.effects.of_joints(names, topic))
             assert robots.effects.last[topic].names is names
     assert len(effects) > 1.5 * count
+    assert set(robots.effects.last.values()) <= set(robots.effects.known)

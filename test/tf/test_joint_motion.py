@@ -59,6 +59,13 @@ def test_a_static_model_does_not_move():
     assert not motion_of(text)[1].dofs
 
 
+def test_a_joint_moves_the_link_of_its_parent_frame_backwards():
+    text = model_file(
+        '<link name="a"/><link name="b"/><frame name="f" attached_to="b"/>' + joint(
+            '<parent>f</parent><child>a</child><axis><xyz>1 0 0</xyz></axis>', 'j', 'prismatic'))
+    assert_same_pose(poses_at(text, {'j': 2.0})['m::b'], matrix_from_degrees(-2, 0, 0))
+
+
 def test_a_joint_of_the_world_moves_a_model():
     text = world_file(
         '<model name="m"><link name="l"/></model><joint name="j" type="prismatic">'

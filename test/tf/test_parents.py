@@ -241,5 +241,18 @@ def test_models_move_freely_unless_they_are_static_or_joined(content, only_model
 def test_models_in_a_model_without_a_transform_stay_in_it():
     scene = sdf_pose_bridge.load_text(world_file(A + model('b', LINKS + model('n', LINKS))))
     found = tf_parents_from_scene(scene).with_free_models(
-        scene, np.array([name.startswith('b') for name in scene.names]), '')
+        scene, np.array([name == 'b::a' for name in scene.names]), '')
     assert [scene.names[each] for each in found.free_models.values()] == ['a']
+
+
+def test_models_of_another_world_do_not_move():
+    scene = sdf_pose_bridge.load_text(
+        f'<sdf version="1.10"><world name="w">{A}</world><world name="v">{B}</world></sdf>')
+    found = tf_parents_from_scene(scene).with_free_models(
+        scene, np.zeros(len(scene.names), np.bool_), '')
+    assert [scene.names[each] for each in found.free_models.values()] == ['a']
+
+
+def test_a_tree_of_joints_starts_at_a_top_level_model_rather_than_in_a_nested_one():
+    text = world_file(model('a', LINKS + model('n', LINKS)) + B + fixed_joint('j', 'a::n', 'b'))
+    assert parents_of(text)['a::n::a'] == 'b::a'

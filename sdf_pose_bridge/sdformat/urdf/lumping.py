@@ -90,8 +90,6 @@ def lumped_inertial(parent: RobotInertial, lumped: RobotInertial) -> RobotInerti
         (a * parent.mass + b * lumped.mass) / mass if mass else math.nan
         for a, b in zip(parent.origin[:3], lumped.origin[:3], strict=True))
     origin = parent.origin._replace(x=x, y=y, z=z)
-    if not mass:
-        return RobotInertial(mass, origin, parent.moments)
     both = parent, lumped
     places = np.array([relative_pose(origin, each.origin) for each in both])
     axes = matrix_from_quaternion(places[:, 3:])

@@ -108,6 +108,8 @@ def test_swapped_limits_are_as_written_for_ros_and_in_order_in_an_include(tmp_pa
         assert (axis.lower, axis.upper) == limits
         (warning,) = scene.warnings
         assert warning.message.startswith(told)
+    equal = text.replace('"2"', '"-1"')
+    assert load(write(tmp_path, equal)).warnings == ()
 
 
 def test_preserved_fixed_joint_can_be_mimicked(tmp_path):
@@ -142,6 +144,14 @@ def test_link_world_is_the_world():
     assert scene.pose('r::b').x == 1.0
     assert len(scene.joints) == 1
     assert scene.urdf_root == 'world'
+    assert names_of(load_text(robot('<link name="world"/>'))) == ['r']
+
+
+def test_link_fixed_to_the_world_stays_a_link_in_an_include(tmp_path):
+    text = '<link name="world"/>' + link('b') + joint('j', 'world', 'b', 'fixed', origin('1 0 0'))
+    scene = load(write(tmp_path, text))
+    assert kinds_of(scene)['n::b'] == 'link'
+    assert scene.pose('n::b', 'n').x == 1.0
 
 
 MASSLESS = (TWO + '<link name="c"/>' + link('d') + joint('j', 'a', 'b', 'continuous')
@@ -158,8 +168,15 @@ def test_link_without_mass_is_left_out_with_what_is_below_it_in_an_include(tmp_p
     assert warning.place.element == '/robot[@name="r"]/link[@name="c"]'
 
 
-def test_link_without_mass_stays_for_ros_with_a_warning():
-    scene = load_text(robot(MASSLESS))
+def test_link_without_mass_at_a_fixed_joint_is_a_frame_in_an_include(tmp_path):
+    scene = load(write(tmp_path, link('a') + '<link name="b"/>' + FIXED))
+    assert kinds_of(scene)['n::b'] == 'frame'
+    assert scene.warnings == ()
+
+
+@pytest.mark.parametrize('massless', ['<link name="c"/>', link('c', mass=0.0)])
+def test_link_without_mass_stays_for_ros_with_a_warning(massless):
+    scene = load_text(robot(MASSLESS.replace('<link name="c"/>', massless)))
     assert scene.pose('r::d')[:3] == (1.0, 1.0, 0.0)
     (warning,) = scene.warnings
     assert (warning.code, warning.place.element) == (
@@ -175,6 +192,12 @@ def test_link_without_mass_stays_for_ros_with_a_warning():
 ])
 def test_robot_without_any_mass_is_read_for_ros(text):
     assert load_text(robot(text)).pose('r::b')[:3] == (1.0, 0.0, 0.0)
+
+
+def test_links_without_mass_below_others_are_lumped_as_if_they_were_not_there_for_ros():
+    text = (link('a', mass=0.0) + link('b', mass=0.0) + link('c')
+            + joint('k', 'a', 'b') + joint('j', 'a', 'c'))
+    assert load_text(robot(text)).warnings == ()
 
 
 # Fixed joints
@@ -225,15 +248,17 @@ def test_revolute_joint_in_place_of_a_fixed_one_has_the_axis_of_sdformat():
 
 
 @pytest.mark.parametrize(('tag', 'expected'), [
-    ('visual', ['a_visual', 'a_fixed_joint_lump__b_visual_1', 'a_fixed_joint_lump__v_visual_2']),
+    ('visual', ['a_visual', 'a_fixed_joint_lump__b_visual_1', 'a_fixed_joint_lump__v_visual_2',
+                'ab_visual_3']),
     ('collision', ['a_collision', 'a_fixed_joint_lump__b_collision_1',
-                   'a_fixed_joint_lump__v_collision_2']),
+                   'a_fixed_joint_lump__v_collision_2', 'ab_collision_3']),
 ])
 def test_shapes_of_a_lumped_link_move_to_its_parent(tmp_path, tag, expected):
     pose = origin('1 0 0')
     scene = load(write(
         tmp_path,
-        link('a', shape(tag)) + link('b', shape(tag, pose) + shape(tag, pose, 'v')) + FIXED))
+        link('a', shape(tag)) + link('b', shape(tag, pose) + shape(tag, pose, 'v')) + FIXED
+        + joint('k', 'b', 'ab') + link('ab', shape(tag))))
     names = [name.removeprefix('n::a::') for name in scene.names if tag in name]
     assert names == expected
     assert scene.pose(f'n::a::{names[1]}', 'n')[:3] == pytest.approx((1.0, 1.0, 0.0))
@@ -249,11 +274,14 @@ def test_mesh_of_a_package_stays_one(is_included):
 def test_poses_of_two_fixed_joints_in_a_row_are_multiplied_from_the_first(tmp_path):
     text = (TWO + link('c', shape('visual')) + FIXED
             + joint('k', 'b', 'c', 'fixed', origin('0 2 0', '0.5 0 0'))
-            + link('d') + joint('l', 'c', 'd', 'continuous', origin('0 0 3')))
+            + link('d') + joint('l', 'c', 'd', 'continuous', origin('0 0 3'))
+            + gazebo(SENSOR.format(''), 'c'))
     included, alone = load(write(tmp_path, text)), load_text(robot(text))
     expected = (-1.0, 0.0, 0.0, *quaternion_from_rpy((0.5, 0.0, math.pi / 2)))
     for name in ('a::a_fixed_joint_lump__c_visual', 'c'):
         assert included.pose(f'n::{name}', 'n') == pytest.approx(expected), name
+    assert included.pose('n::a::s', 'n') == pytest.approx(expected, abs=1e-5)
+    assert included.pose('n::a::inertial', 'n')[:3] == pytest.approx((0.0, 0.0, 0.0))
     assert alone.pose('r::c', 'r') == pytest.approx(expected)
     assert included.pose('n::d', 'n') == pytest.approx(alone.pose('r::d', 'r'))
 
@@ -278,10 +306,13 @@ def test_link_without_mass_gets_that_of_a_lumped_link(tmp_path):
 
 
 def test_pitch_near_a_right_angle_is_rounded_as_by_libsdformat_in_an_include(tmp_path):
-    robot_file = link('a', shape('visual', '<origin rpy="0 1.57 0"/>'))
+    pitch = '<origin rpy="0 1.57 0"/>'
+    robot_file = (link('a', shape('visual', pitch)) + link('b', center='1 0 0')
+                  + joint('j', 'a', 'b', 'fixed', pitch))
     right_angle = (0.0, math.sqrt(0.5), 0.0, math.sqrt(0.5))
     included, alone = load(write(tmp_path, robot_file)), load_text(robot(robot_file))
     assert included.pose('n::a::a_visual')[3:] == pytest.approx(right_angle)
+    assert included.pose('n::a::inertial', 'n')[:3] == pytest.approx((0.0, 0.0, -0.5), abs=1e-9)
     assert alone.pose('r::a::a_visual').qy == pytest.approx(math.sin(0.785), abs=1e-15)
 
 
@@ -296,7 +327,8 @@ def test_sensor_of_a_link():
 
 @pytest.mark.parametrize(('pose', 'y'), [
     ('<pose>0.123456789 0 0 0 0 0</pose>', 0.123457),
-    ('<pose relative_to="b">1 0 0 0 0 0</pose>', 1.0),
+    ('<pose>1 0 0 0 0 0 9</pose>', 1.0),
+    ('<pose relative_to="a">1 3 0 0 0 0</pose>', 3.0),
 ])
 def test_pose_of_a_sensor_on_a_lumped_link_has_six_digits_and_its_reference(tmp_path, pose, y):
     scene = load(write(tmp_path, TWO + FIXED + gazebo(SENSOR.format(pose), 'b')))
@@ -315,6 +347,7 @@ def test_pose_that_is_not_one_is_refused_in_an_include(tmp_path, number):
     text = SENSOR.format(f'<pose>{number} 0 0 0 0 0</pose>')
     (error,) = errors_of_file(write(tmp_path, TWO + FIXED + gazebo(text, 'b')))
     assert error.code == 'ELEMENT_INVALID'
+    assert number in error.message
 
 
 @pytest.mark.parametrize('end', ['\n', ''])
@@ -359,7 +392,7 @@ def test_sensor_of_a_joint():
     ('j', 'it removes the fixed joint "j"; <preserveFixedJoint>true</preserveFixedJoint>'),
     ('c', 'no link or joint of that name')])
 def test_what_belongs_to_nothing_is_left_out_with_a_warning(tmp_path, reference, reason):
-    text = TWO + FIXED + gazebo(SENSOR.format(''), reference)
+    text = TWO + FIXED + gazebo('<mu1>1</mu1>' + SENSOR.format(''), reference)
     scene = load(write(tmp_path, text))
     assert not any(name.endswith('::s') for name in scene.names)
     alone = load_text(robot(text))
@@ -376,6 +409,8 @@ def test_what_belongs_to_nothing_is_left_out_with_a_warning(tmp_path, reference,
 ])
 def test_sensor_that_gazebo_keeps_causes_no_warning_about_its_joint(text):
     assert not any('removes' in each.message for each in load_text(robot(TWO + text)).warnings)
+    sources = model_from(robot(TWO + text))
+    assert sources.find('.//sensor') is not None
 
 
 BALL = '<joint name="k" type="ball"><parent>world</parent><child>b</child></joint>'

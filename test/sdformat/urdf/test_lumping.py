@@ -43,6 +43,13 @@ def test_sum_has_the_axes_of_the_parent():
     assert total.moments == pytest.approx(box(1, 4, 3).moments)
 
 
+def test_moments_of_a_turned_link_are_turned_into_the_axes_of_the_parent():
+    turned = box(1, 2, 3, Pose(0.0, 0.0, 0.0, *quaternion_from_rpy((0.0, 0.0, 0.5))))
+    xx, yy, *_ = turned.moments
+    moments = lumped_inertial(RobotInertial(), turned).moments
+    assert moments[3] == pytest.approx((xx - yy) * math.sin(0.5) * math.cos(0.5))
+
+
 def test_link_without_a_mass_changes_nothing():
     assert lumped_inertial(RobotInertial(), box(1, 2, 3, Pose(1.0))).moments == pytest.approx(
         box(1, 2, 3).moments)
