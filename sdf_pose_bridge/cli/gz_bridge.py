@@ -13,7 +13,6 @@ from xml.sax.saxutils import escape, quoteattr
 from sdf_pose_bridge.cli.arguments import add_file_arguments, add_output_argument, argument_type
 from sdf_pose_bridge.cli.loading import doubts_about_frames, scene_of, STANDARD_INPUT
 from sdf_pose_bridge.cli.printing import CommandError, print_problems, write_text
-from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.scene import Scene
@@ -54,8 +53,7 @@ def run(options: argparse.Namespace) -> int:
         raise CommandError(msg)
     scene = scene.with_model_name(options.model_name)
     topics = bridged_topics(_scene_of_gazebo(scene, options), options.only, world)
-    doubts = (SdfWarning('WARNING', each.doubt, scene.place(each.element))
-              for each in topics if each.doubt)
+    doubts = [each.doubt for each in topics if each.doubt]
     print_problems((), (*doubts_about_frames(scene), *doubts), sys.stderr)
     if options.node:
         parameters = {
@@ -87,7 +85,7 @@ def _lines(bridged: BridgedTopic) -> Iterator[str]:
         yield f'# {printable(bridged.gz_name)} of gz.msgs.{topic.gz_type}: {topic.reason}'
         return
     if bridged.doubt:
-        yield f'# {printable(bridged.doubt)}'
+        yield f'# {printable(bridged.doubt.message)}'
     yield f'- ros_topic_name: {_yaml_from_value(bridged.ros_name)}'
     yield f'  gz_topic_name: {_yaml_from_value(bridged.gz_name)}'
     yield f'  ros_type_name: {ROS_TYPES[topic.gz_type]}'

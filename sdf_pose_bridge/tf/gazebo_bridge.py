@@ -13,7 +13,7 @@ from collections import defaultdict
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from sdf_pose_bridge.errors import ElementMissingError
+from sdf_pose_bridge.errors import ElementMissingError, SdfWarning
 from sdf_pose_bridge.names import quoted_names, SEPARATOR, unused_name
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.gazebo_topics import GazeboTopic, GROUPS, is_true, topics_of
@@ -29,14 +29,12 @@ class BridgedTopic(NamedTuple):
     pattern: str
     """Its name in ROS with ``{model}`` for the model; for joints the top-level model."""
     topic: GazeboTopic
-    element: int
-    """The model, the world or the sensor that it belongs to; the first one of several."""
     model: str
-    """The scoped name of the model of this; empty for a world."""
+    """The scoped name of its model; empty for a world."""
     places_model: bool
     """Whether its messages say where the model is."""
-    doubt: str = ''
-    """A warning about a topic of several plugins or sensors; else empty."""
+    doubt: SdfWarning | None = None
+    """A warning about a topic of several plugins or sensors."""
 
 
 def bridged_topics(scene: Scene, groups: Collection[str], world: str = '') -> list[BridgedTopic]:
@@ -63,12 +61,12 @@ def bridged_topics(scene: Scene, groups: Collection[str], world: str = '') -> li
     bridged, used = [], set[str]()
     for (name, *_), owners in found.items():
         element, (topic, values) = next(iter(owners.items()))
-        prefix, below, doubt = '', name[1:], ''
-        model = values.get('model', '')
+        prefix, below, model, doubt = '', name[1:], values.get('model', ''), None
         if len(owners) > 1:
             owner_names = quoted_names([scene.names[each] for each in owners])
-            doubt = (f'the topic {name} belongs to {owner_names}, so it has messages of all; give '
-                     'each a topic of its own in the file')
+            doubt = SdfWarning('WARNING', (
+                f'the topic {name} belongs to {owner_names}, so it has messages of all; give each '
+                'a topic of its own in the file'), scene.place(element))
         elif model:
             prefix = model.partition(SEPARATOR)[0] if topic.group == 'joints' else model
             below = '/'.join(filter(None, (
@@ -78,7 +76,7 @@ def bridged_topics(scene: Scene, groups: Collection[str], world: str = '') -> li
         ros_name = unused_name(f'{prefix}/{_ros_name(below)}', used)
         bridged.append(BridgedTopic(
             name, ros_name, ros_name.replace(prefix, '/{model}', 1) if prefix else ros_name, topic,
-            element, model, bool(topic.odometry_frame) or (
+            model, bool(topic.odometry_frame) or (
                 topic.group == 'poses' and is_true(values, 'publish_model_pose')), doubt))
     return bridged
 

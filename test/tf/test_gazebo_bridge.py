@@ -83,7 +83,7 @@ def test_a_topic_of_several_robots_keeps_its_name_and_is_told():
         model(name, f'<link name="k">{IMU.format("<topic>i</topic>")}</link>') for name in 'ab'))
     (_, topic), _ = topics_in(text)
     assert (topic.ros_name, topic.gz_name) == ('/i', '/i')
-    assert 'the topic /i belongs to "a::k::s", "b::k::s"' in topic.doubt
+    assert 'the topic /i belongs to "a::k::s", "b::k::s"' in topic.doubt.message
 
 
 def test_names_that_ros_forbids_are_escaped_as_by_the_node():
