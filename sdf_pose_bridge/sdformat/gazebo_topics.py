@@ -56,9 +56,10 @@ AckermannSteering,DiffDrive,MecanumDrive,TrackedVehicle Odometry odometry {odom_
 
 sensors
 LinearBatteryPlugin BatteryState {battery_name}/battery_state ~/battery/{battery_name}/state
-camera,thermal,wide_angle Image image {topic} @/image
+camera,thermal,wide_angle,wideanglecamera Image image {topic} @/image
 camera CameraInfo camera_info {camera/camera_info_topic} {topic}/../camera_info @/camera_info
-boundingbox,depth,thermal,wide_angle CameraInfo camera_info {topic}/../camera_info @/camera_info
+boundingbox,depth,thermal,wide_angle,wideanglecamera CameraInfo camera_info \
+    {topic}/../camera_info @/camera_info
 depth Image depth_image {topic} @/depth_image
 depth PointCloudPacked points {topic}/points @/depth_image/points
 rgbd Image image {topic}/image @/image

@@ -55,6 +55,7 @@ def test_names_are_cleaned_as_by_gazebo(topic, name):
      ['/c/raw', '/i', '/c/raw/trigger']),
     ('depth_camera', {}, [
         f'{SENSOR}/camera_info', f'{SENSOR}/depth_image', f'{SENSOR}/depth_image/points']),
+    ('wideanglecamera', {'topic': 'a/w'}, ['/a/w', '/a/camera_info']),
     ('rgbd_camera', {'topic': 'r'}, ['/r/image', '/r/depth_image', '/r/points', '/r/camera_info']),
     ('gpu_lidar', {}, [f'{SENSOR}/scan', f'{SENSOR}/scan/points']),
     ('contact', {'topic': 'no', 'contact/topic': 'yes'}, ['/yes']),
