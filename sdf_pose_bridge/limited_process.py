@@ -266,7 +266,10 @@ def _serve(calls: socket.socket, prepare: Callable[[], None]) -> NoReturn:
                 if descriptor in running:
                     poll.unregister(descriptor)
                     os.close(descriptor)
-                    _report_end(*running.pop(descriptor))
+                    pid, status = running.pop(descriptor)
+                    _, code, usage = os.wait4(pid, 0)
+                    _report(status, _ENDED, os.waitstatus_to_exitcode(code),
+                            usage.ru_utime + usage.ru_stime)
                     continue
                 _, descriptors, _, _ = socket.recv_fds(calls, 1, 2)
                 if not descriptors:
@@ -292,12 +295,6 @@ def _process_of_call(file: BinaryIO, status: socket.socket) -> int:
     if pid == 0:
         _answer_call(file, status)
     return pid
-
-
-def _report_end(pid: int, status: socket.socket) -> None:
-    """Report the end of a process."""
-    _, code, usage = os.wait4(pid, 0)
-    _report(status, _ENDED, os.waitstatus_to_exitcode(code), usage.ru_utime + usage.ru_stime)
 
 
 def _report(

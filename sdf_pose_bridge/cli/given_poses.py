@@ -61,6 +61,8 @@ class PoseReader:
     def _in_given_units(self, source: Format) -> Format:
         """Return a format in the units of the options."""
         angle, length = self._options.given_angle, self._options.given_length
+        if not (angle or length):
+            return source
         for unit, has_unit, what in (
             (angle, source.angle, 'angles'), (length, source.position, 'lengths'),
         ):

@@ -29,7 +29,7 @@ FORMATS: Mapping[str, Format] = {**ROTATION_FORMATS, **POSE_FORMATS}
 
 _SEPARATOR = re.compile(r'[\s,;()\[\]{}]+')
 _SEPARATOR_OF_NAMES = re.compile(r"""(?:[\s,;:=()\[\]{}<>/"']|-(?=\s))+""")
-_ARRAY = re.compile(r'(?:\w+\.)?(?:array|matrix|tensor)\(|,\s*dtype=[\w.]+')
+_ARRAY = re.compile(r'\b(?:\w+\.)?(?:array|matrix|tensor)\(|,\s*dtype=[\w.]+')
 _DECIMAL_COMMA = re.compile(r'(?<![\w.,+-])[-+]?\d+,\d+(?![\w.]|,\S)')
 _COMMA, _BLANK = re.compile(r'\d,\s*[-+.\d]'), re.compile(r'[\d.][ \t]+[-+.\d]')
 _NUMBERS = re.compile(r'[\s\d.,;eE+\[\]-]+')
@@ -101,7 +101,8 @@ def typed_pose_from_text(
                 msg = f'the text is {form.format.name} ({form.text}), not {source.name}'
                 raise PoseFormatError(msg)
             return _typed_pose(
-                words, form.format, f'read as {form.format.name}: {form.text}')
+                words, [*map(number_from_text, words)], form.format,
+                f'read as {form.format.name}: {form.text}')
     if begun is not None or form_name:
         msg = f'the text has not the numbers of {begun.text if begun else form_name}'
         raise PoseFormatError(msg)
@@ -114,13 +115,14 @@ def typed_pose_from_text(
         msg = f'nothing says the format of these {len(numbers)} numbers'
         raise NoFormatError(msg)
     if len(words) == 12 and source.last_row == (12, 13, 14, 15):
-        return _typed_pose([*words, *'0001'], source, 'the last row 0 0 0 1 is added')
+        return _typed_pose(
+            words, [*numbers, 0.0, 0.0, 0.0, 1.0], source, 'the last row 0 0 0 1 is added')
     if len(words) != source.row_length:
         hint = '; decimals need points' if ',' in text and '.' not in text else ''
         msg = (f'{source.name} has {source.row_length} numbers ({source.meaning}), but'
                f' {len(words)} {"is" if len(words) == 1 else "are"} given{hint}')
         raise PoseFormatError(msg)
-    return _typed_pose(words, source)
+    return _typed_pose(words, numbers, source)
 
 
 def number_from_text(text: str) -> float:
@@ -173,9 +175,11 @@ def _row_count(text: str) -> int:
     return count if count in (3, 4) and _NUMBERS.fullmatch(text) else 0
 
 
-def _typed_pose(words: list[str], source: Format, *notes: str) -> TypedPose:
+def _typed_pose(
+    words: list[str], numbers: list[float], source: Format, *notes: str,
+) -> TypedPose:
     """Return a pose; of a matrix whose digits are few, with the nearest rotation."""
-    numbers, places = [*map(number_from_text, words)], list(source.columns)
+    places = list(source.columns)
     if len(places) == 9 and np.abs(matrix := np.array(numbers)[places]).max() < 2.0:
         # Small numbers have more digits behind the point in some programs.
         digits = max((-int(Decimal(words[place]).as_tuple().exponent) for place in places

@@ -116,14 +116,9 @@ class JointPositions:
         """For each free model in a model the name of that, and its pose there in the file."""
         count = len(self.names)
         self._is_fixed = np.zeros(count, np.bool_)
-        self._is_fixed[:len(dofs)] = [
-            each.axis.lower == each.axis.upper and abs(each.axis.lower) <= LARGEST_POSITION
-            for each in dofs]
         self.values = motion.initial_coordinates.copy()
         """The coordinates. The array is replaced, never changed in place, so another thread has
         all values of one time."""
-        fixed = np.flatnonzero(self._is_fixed)
-        self.values[fixed] = [dofs[dof].axis.lower for dof in fixed]
         self._motion = motion
         self._stamps_of_values_ns = np.full(count, _UNREPORTED)
         self.reported_count = 0
@@ -143,7 +138,9 @@ class JointPositions:
         self._is_leader = np.ones(len(self.names), np.bool_)
         leaders = {(each.joint.element, each.number): dof for dof, each in enumerate(dofs)}
         for dof, each in enumerate(dofs):
-            mimic = each.axis.mimic
+            mimic, lower = each.axis.mimic, each.axis.lower
+            if lower == each.axis.upper and abs(lower) <= LARGEST_POSITION:
+                self._is_fixed[dof], self.values[dof] = True, lower
             if mimic is not None and (mimic.joint, mimic.axis) in leaders:
                 leader = leaders[mimic.joint, mimic.axis]
                 self._followers.setdefault(leader, []).append(Follower(dof, leader, mimic))

@@ -63,7 +63,8 @@ def html_of_frame(shown: ShownScene, frame: int, reference: int, units: Units) -
             scene.names[element], str(scene.place(element)))]
     lines = [html_of_copy_button(printable(text)) + row for text, row in rows]
     lines += [
-        f'in <b>{escaped(ids[other])}</b><br>{"<br>".join(_place(shown, other, frame, units))}'
+        '<br>'.join((f'in <b>{escaped(ids[other])}</b>',
+                     *_texts(units, shown.pose_in(other, frame))))
         for other in dict.fromkeys((reference, ROOT_IS_PARENT, int(tree.parents[frame])))
         if other not in (NO_PARENT, frame)]
     pose, other = shown.pose_in(reference, frame), shown.element_of(reference)
@@ -87,10 +88,6 @@ def html_of_frame(shown: ShownScene, frame: int, reference: int, units: Units) -
 
 def _text(values: Sequence[float]) -> str:
     return ' '.join(map(repr, values))
-
-
-def _place(shown: ShownScene, reference: int, frame: int, units: Units) -> tuple[str, str]:
-    return _texts(units, shown.pose_in(reference, frame))
 
 
 def _texts(units: Units, pose: Pose) -> tuple[str, str]:
@@ -122,7 +119,7 @@ def html_of_selection(
     names = [shown.ids[index] for index in np.flatnonzero(is_moved).tolist() if index != frame]
     moved = f'<div class="moved">moves with it: {escaped(quoted_names(names))}</div>'
     return (f'<b>{escaped(shown.ids[frame])}</b> in {escaped(shown.ids[reference])}: '
-            f'{", ".join(_place(drawn, reference, frame, units))}'
+            f'{", ".join(_texts(units, drawn.pose_in(reference, frame)))}'
             f'<div>{escaped(_pose_in_file(shown, frame, units))}</div>{moved if names else ""}')
 
 
