@@ -271,9 +271,9 @@ def _converted(
     if source.sequence is not None and source.sequence is target.sequence:
         # Rounding must not change angles that are already canonical.
         angles = rows[:, source.columns]
-        are_canonical = source.sequence.are_canonical(angles.T, source.half_turn)
-        angles = angles[are_canonical]
-        result[np.ix_(are_canonical, target.columns)] = (
+        kept = np.flatnonzero(source.sequence.are_canonical(angles.T, source.half_turn))
+        angles = angles[kept]
+        result[kept[:, np.newaxis], target.columns] = (
             angles if target.angle == source.angle
             else angles * target.half_turn / source.half_turn)
     result += 0.0  # no negative zeros
