@@ -6,7 +6,6 @@ import itertools
 import math
 from pathlib import Path
 import sys
-import time
 
 import pytest
 
@@ -25,7 +24,6 @@ from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 from tracker import CART, stamped, Tracker, WORLD
 
-from sdf_pose_bridge.ros.log_lines import WARNING_PERIOD_S
 from sdf_pose_bridge_interfaces.srv import LookupPose
 
 EXAMPLES = Path(__file__).resolve().parents[2] / 'examples'
@@ -117,7 +115,6 @@ def test_older_poses_count_after_simulated_time_has_jumped_back(follow, tf, trac
 def test_many_poses_of_hostile_names_delay_no_look_up(follow, tf, tracker):
     bridge = follow('/hostile', TOPIC)
     tracker.move(3.0)
-    begin = time.monotonic()
     for number in range(30):
         hostile = [f'\n\x1b[31m{{}}%s"{number}/{row}' for row in range(300)]
         tracker.publish(TFMessage(transforms=[
@@ -125,8 +122,6 @@ def test_many_poses_of_hostile_names_delay_no_look_up(follow, tf, tracker):
             for each in hostile for names in ((each, 'cart'), ('', each))]), '/hostile')
         assert pose_of(tf, 'cart/deck').x == 3.0
     tracker.move(4.0)
-    periods = (time.monotonic() - begin) / WARNING_PERIOD_S
-    assert sum('which are ignored' in line for line in bridge.lines) <= 2 * (periods + 1)
     assert not any('internal error' in line for line in bridge.lines)
 
 

@@ -9,7 +9,7 @@ from deadline import DEADLINE_S
 import pytest
 
 PROGRAM = """
-import sys, threading, time
+import sys, threading
 from sdf_pose_bridge.ros.ending import end_at_failures_of_threads, end_without_memory
 
 class Fails:
@@ -21,16 +21,15 @@ def fail():
 
 end_at_failures_of_threads()
 {code}
-time.sleep({seconds})
 print('goes on')
 """
-IN_THREAD = 'threading.Thread(target=fail).start()'
+IN_THREAD = 'thread = threading.Thread(target=fail); thread.start(); thread.join()'
 NO_MEMORY = 'sdf_pose_bridge: there is not enough memory, so the node ends\n'
 
 
-def ended(code, error, seconds=30):
+def ended(code, error):
     return subprocess.run(
-        [sys.executable, '-c', PROGRAM.format(code=code, error=error, seconds=seconds)],
+        [sys.executable, '-c', PROGRAM.format(code=code, error=error)],
         capture_output=True, text=True, check=False, timeout=DEADLINE_S)
 
 
@@ -50,5 +49,5 @@ def test_a_thread_that_fails_ends_the_process_with_a_traceback():
 @pytest.mark.parametrize(('code', 'error'), [
     (IN_THREAD, 'SystemExit'), ('Fails()', 'KeyError')])
 def test_other_ends_of_a_thread_and_defects_that_python_reports_end_nothing(code, error):
-    done = ended(code, error, 0.2)
+    done = ended(code, error)
     assert (done.returncode, done.stdout) == (0, 'goes on\n')

@@ -5,7 +5,6 @@
 import concurrent.futures
 import math
 import threading
-import time
 
 from deadline import DEADLINE_S, wait_until
 import pytest
@@ -25,10 +24,7 @@ from tf2_msgs.msg import TFMessage
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.ros import joint_states, message_problems
 from sdf_pose_bridge.ros.given_parameters import settings_from_values
-from sdf_pose_bridge.ros.joint_states import (
-    JointStates,
-    TOPICS_PERIOD_S,
-)
+from sdf_pose_bridge.ros.joint_states import JointStates
 from sdf_pose_bridge.ros.published_frames import PublishedFrames, TF
 from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.ros.state_topic import MOST_WAITING
@@ -395,17 +391,22 @@ def test_subscriptions_are_made_and_destroyed_by_the_executor(following):
     assert threads == {threading.current_thread()}
 
 
-def test_topics_have_few_of_many_messages_and_the_last_one_again_at_rest(arm):
+def test_topics_have_few_of_many_messages_and_the_last_one_again_at_rest(arm, monkeypatch):
     secs = []
     arm.listener.create_subscription(
         TransformStamped, '/bridge/transforms',
         lambda each: each.child_frame_id == 'upper' and secs.append(each.header.stamp.sec),
         LATCHED)
     arm.wait(lambda: secs)
-    begin = time.monotonic()
+    for name in ('TOPICS_PERIOD_S', '_REST_S'):
+        monkeypatch.setattr(joint_states, name, 1e9)
     arm.published(*((FIRST + number, {'turn': 0.5}) for number in range(200)))
-    arm.wait(lambda: secs[-2:] == [FIRST + 199] * 2)
-    assert len(secs) <= 6 + (time.monotonic() - begin) / TOPICS_PERIOD_S
+    arm.wait(lambda: secs[-1] >= FIRST)
+    monkeypatch.setattr(joint_states, '_REST_S', 0.0)
+    arm.send(FIRST + 200, {'turn': 0.5})
+    arm.wait(lambda: secs[-1] == FIRST + 200)
+    # The first one, perhaps one for the rest before, and the last one.
+    assert sum(each >= FIRST for each in secs) <= 3
 
 
 def test_what_was_created_for_it_is_destroyed_with_it(following):

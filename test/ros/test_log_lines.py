@@ -3,6 +3,7 @@
 """What goes to the log: one line for each thing, whatever names a file holds."""
 
 import ast
+from functools import partial
 from pathlib import Path
 import re
 
@@ -10,6 +11,7 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
+from rclpy.logging import get_logger
 from sdf_texts import fixed_joint, joint, model_file, world_file
 from tf_checks import tree_of
 import urdf_texts as urdf
@@ -28,7 +30,10 @@ from sdf_pose_bridge.ros.log_lines import (
     lines_from_error,
     lines_from_warnings,
     MOST_LINES,
+    MOST_REPORTED,
+    RareWarnings,
     text_about_defect,
+    WARNING_PERIOD_S,
 )
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.ros.state_report import StateReport
@@ -108,6 +113,20 @@ def test_the_traceback_of_a_defect_writes_no_line_of_the_log():
     assert first.isprintable()
     assert all(line.startswith('    ') and line.isprintable() for line in lines)
     assert len(lines) == 100
+
+
+def test_warnings_about_the_same_are_rare_and_about_new_names_only(monkeypatch, capfd):
+    now = 0.0
+    monkeypatch.setattr('time.monotonic', lambda: now)
+    warnings = RareWarnings(get_logger('test'))
+    many = [str(number) for number in range(MOST_REPORTED)]
+    for now, about, names in (
+            (0.0, 'a', ['x']), (1.0, 'a', ['y']), (1.0, 'b', ['y']),
+            (WARNING_PERIOD_S, 'a', ['x', 'y']), (2 * WARNING_PERIOD_S, 'a', ['z', *many]),
+            (3 * WARNING_PERIOD_S, 'a', many)):
+        warnings.warn_once(about, names, partial('{} about {}'.format, now, about))
+    assert [line.split('[test]: ')[1] for line in capfd.readouterr().err.splitlines()] == [
+        '0.0 about a', '1.0 about b', '20.0 about a', '30.0 about a']
 
 
 def test_names_and_paths_cannot_write_lines_of_their_own(tmp_path):

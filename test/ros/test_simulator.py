@@ -3,7 +3,6 @@
 """Calls of a simulator, and its answers."""
 
 import sys
-import time
 
 from deadline import wait_until
 import pytest
@@ -66,6 +65,13 @@ def spin_until(node, condition):
     wait_until(condition, lambda: node.executor.spin_once(timeout_sec=0.01))
 
 
+def spin_as_long_as_many_calls(node):
+    ticks = []
+    timer = node.create_timer(0.01, lambda: ticks.append('tick'))
+    spin_until(node, lambda: len(ticks) == 20)
+    node.destroy_timer(timer)
+
+
 def test_without_the_package_a_line_says_what_to_install(node, monkeypatch, capfd):
     monkeypatch.setitem(sys.modules, 'simulation_interfaces.srv', None)
     simulator = Simulator(node, SERVICE, lambda: None)
@@ -94,10 +100,8 @@ def test_a_call_without_an_answer_is_followed_by_a_second_one(
     monkeypatch.setattr(Service, 'send_response', lambda *_: None)
     requests = service(['a'], 1)
     spin_until(node, lambda: len(requests) > 1)
-    ticks = []
-    node.create_timer(0.01, lambda: ticks.append(len(requests)))
-    spin_until(node, lambda: len(ticks) == 20)
-    assert ticks == [2] * 20
+    spin_as_long_as_many_calls(node)
+    assert len(requests) == 2
     monkeypatch.setattr(module, 'LONGEST_CALL_S', 0.0)
     spin_until(node, lambda: len(requests) > 2)
     assert simulator._problem.startswith('no answer in')
@@ -122,7 +126,7 @@ def test_a_wrong_number_is_told(node, simulator, service, names, states, line, c
     assert log[-1].count(line.format(SERVICE)) == 1
     assert simulator.has_answers == (len(names) == states)
     if len(names) == states:
-        assert simulator._due > time.monotonic() + 30.0
+        spin_as_long_as_many_calls(node)
         assert len(requests) == 1
         follow(simulator, 'a', 'b')
         spin_until(node, lambda: len(requests) > 1)
