@@ -71,7 +71,7 @@ demo: setup
 	@$(in_shell) python examples/demo.py $(ARGS)
 
 test: setup
-	@$(in_shell) python -m pytest --numprocesses auto --dist loadfile $(ARGS)
+	@$(in_shell) python -m pytest --numprocesses auto --dist loadfile --no-loadscope-reorder $(ARGS)
 
 # Tests that need no ROS and wait for no other process, so more processes than cores would not help.
 test_core: setup
@@ -99,7 +99,7 @@ coverage: export COVERAGE_FILE = $(CURDIR)/.underlay/coverage/data
 coverage: setup
 	@. underlay/setup.bash && python -m pip install --quiet 'coverage==7.17.3' \
 	  && rm -rf .underlay/coverage && mkdir -p .underlay/coverage \
-	  && { python -m coverage run -m pytest --numprocesses auto --dist loadfile $(ARGS); \
+	  && { python -m coverage run -m pytest --numprocesses auto --dist loadfile --no-loadscope-reorder $(ARGS); \
 	    python -m coverage combine --quiet && python -m coverage report --skip-covered; }
 
 lint: setup

@@ -31,6 +31,13 @@ def pytest_xdist_auto_num_workers():
     return min(3 * len(os.sched_getaffinity(0)), 16)
 
 
+def pytest_collection_modifyitems(items):
+    """Begin with the tests that take longest, so that no process has them last."""
+    longest = ('cli/page', 'sdformat/test_limits.py', 'integration')
+    folder = Path(__file__).parent
+    items.sort(key=lambda item: not item.path.relative_to(folder).as_posix().startswith(longest))
+
+
 def pytest_report_header():
     """Return lines that say what the tests run with."""
     found = importlib.util.find_spec('rclpy')

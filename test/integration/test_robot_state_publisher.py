@@ -157,7 +157,7 @@ def test_everything_else_can_be_switched_on_and_off(start, file, listener):
 
 @pytest.mark.parametrize(('arguments', 'line'), [
     ([], 'parameter robot_description is not set'),
-    (['a.urdf', 'b.urdf'], 'argument "b.urdf" is not understood')])
+    (['a.urdf', 'b\x1b.urdf'], r'argument "b\x1b.urdf" is not understood')])
 def test_it_ends_with_a_sentence_where_there_is_nothing_to_publish(start, arguments, line):
     program = start(*arguments)
     program.wait_for_line(line)

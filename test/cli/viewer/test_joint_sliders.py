@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""How sliders and fields move joints; integration/test_view_page.py moves one in a browser."""
+"""How sliders and fields move joints; page/ moves one in a browser."""
 
 import math
 from threading import Event

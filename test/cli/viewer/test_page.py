@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the page shows, without a browser; integration/test_view_page.py uses it in one."""
+"""What the page shows, without a browser; page/ uses it in one."""
 
 import html
 import json

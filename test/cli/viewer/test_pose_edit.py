@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""How the numbers of a pose are edited; integration/test_view_page.py drags a frame and types."""
+"""How the numbers of a pose are edited; page/ drags a frame and types."""
 
 import math
 import re

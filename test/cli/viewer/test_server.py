@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Which requests the server of the page answers; integration/test_view_page.py asks it."""
+"""Which requests the server of the page answers; page/ asks it."""
 
 import html
 import re

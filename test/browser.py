@@ -22,10 +22,11 @@ OPTIONS = (
     '--remote-debugging-port=0')
 
 
-class Browser:
-    """One page in a browser; ``requests`` has the address of everything that it asked for."""
+class Tab:
+    """A tab of a browser; ``requests`` has the address of everything that it asked for."""
 
-    def __init__(self, socket):
+    def __init__(self, socket, browser):
+        self._browser = browser
         self._socket, self._numbers = socket, itertools.count(1)
         self.requests, self.errors = [], []
         for domain in ('Page', 'Network', 'Runtime'):
@@ -45,6 +46,14 @@ class Browser:
                 self.requests.append(message['params']['url'])
             elif message.get('method') == 'Runtime.exceptionThrown':
                 self.errors.append(message['params']['exceptionDetails'])
+
+    @contextlib.contextmanager
+    def other(self):
+        """Open another tab in a window of its own, where both are drawn."""
+        tab = self.call('Target.createTarget', url='about:blank', newWindow=True)['targetId']
+        with _tab(self._browser, tab) as other:
+            yield other
+            other.call('Target.closeTarget', targetId=tab)
 
     def open(self, address):
         self.call('Page.navigate', url=address)
@@ -86,9 +95,21 @@ class Browser:
 
 
 @contextlib.contextmanager
-def browser(folder):
-    """Start a browser that keeps its files in a folder; skip where there is none."""
+def _tab(browser, name):
     client = pytest.importorskip('websockets.sync.client', reason='needs websockets')
+    with client.connect(f'ws://{browser}/devtools/page/{name}', max_size=None,
+                        ping_interval=None) as socket:
+        yield Tab(socket, browser)
+
+
+@contextlib.contextmanager
+def browser(folder):
+    """
+    Start a browser that keeps its files in a folder; the context is its tab.
+
+    Skip where there is no browser, or nothing that it could show.
+    """
+    pytest.importorskip('viser', reason='needs viser')
     program = shutil.which('chromium') or shutil.which('google-chrome')
     if program is None or 'LD_PRELOAD' in os.environ:
         pytest.skip('needs Chromium, without the library of a middleware in its processes')
@@ -97,11 +118,11 @@ def browser(folder):
         stderr=subprocess.PIPE, text=True)
     try:
         line = next(line for line in process.stderr if 'DevTools listening on' in line)
-        address = f'http://{urlsplit(line.split()[-1]).netloc}/json/new'
-        with urlopen(Request(address, method='PUT')) as answer:
-            page = json.load(answer)['webSocketDebuggerUrl']
-        with client.connect(page, max_size=None, ping_interval=None) as socket:
-            yield Browser(socket)
+        address = urlsplit(line.split()[-1]).netloc
+        with urlopen(Request(f'http://{address}/json/new', method='PUT')) as answer:
+            name = json.load(answer)['id']
+        with _tab(address, name) as tab:
+            yield tab
     finally:
         process.terminate()
         process.communicate()

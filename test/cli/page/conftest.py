@@ -1,0 +1,59 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""A page that the tests of a module use one after the other."""
+
+from types import SimpleNamespace
+
+from browser import browser
+import pytest
+from shown_page import (
+    HOSTILE,
+    ROWS,
+    select,
+    TEXT,
+    view_of,
+)
+
+
+@pytest.fixture(scope='module')
+def shown(tmp_path_factory):
+    """A file that ``view`` shows, and a browser that shows its page."""
+    folder = tmp_path_factory.mktemp('page')
+    file = folder / 'cell.sdf'
+    file.write_text(TEXT)
+    with browser(folder / 'browser') as page, view_of(folder, '--edit') as address:
+        page.size(1366, 768)
+        page.open(address)
+        page.wait_for(f'{ROWS}.length > 0')
+        yield SimpleNamespace(
+            file=file, page=page, address=address, written_ns=file.stat().st_mtime_ns)
+
+
+@pytest.fixture
+def page(shown):
+    """The page of the file as it was at first."""
+    if shown.file.stat().st_mtime_ns != shown.written_ns:
+        # Not all that tests write, and then undo, is seen in the tree; this is.
+        shown.file.write_text(TEXT.replace('</world>', '<frame name="one more"/></world>'))
+        shown.page.wait_for(f'{ROWS}.length === 6')
+        shown.file.write_text(TEXT)
+        shown.written_ns = shown.file.stat().st_mtime_ns
+    shown.page.wait_for(f"{ROWS}.length === 5 && !document.querySelector('.errors')")
+    # A frame that the last test has moved is back only when the file has been read again.
+    select(shown.page, HOSTILE)
+    shown.page.wait_for("document.body.innerText.includes('xyz 1.0000 0.0000 0.0000 m')")
+    return shown.page
+
+
+@pytest.fixture(params=[(1366, 768), (800, 600)])
+def sized_page(page, request):
+    page.size(*request.param)
+    yield page
+    page.size(1366, 768)
+
+
+@pytest.fixture
+def tab(shown):
+    """Another tab of that browser."""
+    with shown.page.other() as other:
+        yield other
