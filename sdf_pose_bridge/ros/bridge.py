@@ -10,6 +10,7 @@ import os
 import signal
 import sys
 
+from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.ros.ending import end_without_memory
 
 LINK_COMMAND = 'ln -s sdf_pose_bridge/sdf_pose_bridge_interfaces .'
@@ -59,12 +60,12 @@ def main(args: Sequence[str] | None = None, program: str = 'bridge') -> int:
         from sdf_pose_bridge.ros.process import run
         return run(list(sys.argv if args is None else args), program, reader)
     except ImportError as error:
-        print(f'sdf_pose_bridge: {sentence_from_import_error(error)}', file=sys.stderr)
+        print(f'sdf_pose_bridge: {printable(sentence_from_import_error(error))}', file=sys.stderr)
         return 1
     except MemoryError:
         end_without_memory()
     except OSError as error:  # such as too many open files
-        print(f'sdf_pose_bridge: the node cannot start: {error}', file=sys.stderr)
+        print(f'sdf_pose_bridge: the node cannot start: {printable(str(error))}', file=sys.stderr)
         return 1
 
 

@@ -14,7 +14,7 @@ import datetime
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 
-from sdf_pose_bridge.ros.log_lines import count_in_words
+from sdf_pose_bridge.ros.log_lines import count_in_words, line_from_text
 from sdf_pose_bridge.ros.publishers import SwitchedPublisher, Topic
 from sdf_pose_bridge.ros.state_report import StateReport
 from sdf_pose_bridge.tf.loaded_scene import LoadedScene
@@ -87,21 +87,20 @@ def status_from_scene(
     loaded_at = datetime.datetime.fromtimestamp(
         loaded.read_since_ns // 10**9, datetime.timezone.utc)
     values = {
-        'file': str(loaded.path),
+        'file': loaded.path,
         'root frame': loaded.tree.root_frame,
-        'frames': str(len(loaded.tree.frame_ids)),
-        'transforms': str(loaded.tree.transform_count),
-        'files read': str(len(loaded.files)),
+        'frames': len(loaded.tree.frame_ids),
+        'transforms': loaded.tree.transform_count,
+        'files read': len(loaded.files),
         'last good load': loaded_at.isoformat(),
         'time to load': f'{1e3 * loaded.seconds:.0f} ms',
-        'warnings': str(len(warnings)),
-        'first warning': str(warnings[0]) if warnings else '',
-        'last error': '\n'.join(failure),
-        'joints not reported': str(len(states.joints)),
+        'warnings': len(warnings),
+        'first warning': warnings[0] if warnings else '',
+        'joints not reported': len(states.joints),
         'first joint not reported': next(iter(states.joints), ''),
-        'models not reported': str(len(states.models)),
+        'models not reported': len(states.models),
         'first model not reported': next(iter(states.models), ''),
-        'problems of topics': str(len(states.problems)),
+        'problems of topics': len(states.problems),
     }
     if failure:
         level = DiagnosticStatus.ERROR
@@ -122,5 +121,6 @@ def status_from_scene(
         level = DiagnosticStatus.OK
         text = f'serving {loaded.path.name}'
     return DiagnosticStatus(
-        level=level, name=f'{name}: file', message=text, hardware_id='',
-        values=[KeyValue(key=key, value=value) for key, value in values.items()])
+        level=level, name=f'{name}: file', message=line_from_text(text), hardware_id='',
+        values=[*(KeyValue(key=key, value=line_from_text(value)) for key, value in values.items()),
+                KeyValue(key='last error', value='\n'.join(failure))])

@@ -11,7 +11,6 @@ from __future__ import annotations
 import os
 import sys
 import threading
-import traceback
 from typing import NoReturn
 
 _NO_MEMORY = b'sdf_pose_bridge: there is not enough memory, so the node ends\n'
@@ -43,9 +42,7 @@ def _end_after_exception(failure: threading.ExceptHookArgs) -> None:
         return
     try:
         name = failure.thread.name if failure.thread else ''
-        print(f'sdf_pose_bridge: thread "{name}" has failed, so the node ends', file=sys.stderr)
-        traceback.print_exception(failure.exc_value, file=sys.stderr)
-        sys.stderr.flush()
+        _print_exception(f'thread "{name}" has failed, so the node ends', failure.exc_value)
     finally:
         os._exit(1)
 
@@ -53,4 +50,12 @@ def _end_after_exception(failure: threading.ExceptHookArgs) -> None:
 def _end_if_without_memory(failure: sys.UnraisableHookArgs) -> None:
     if failure.exc_type is MemoryError:
         end_without_memory()
-    sys.__unraisablehook__(failure)
+    what = failure.err_msg or 'exception ignored in'
+    _print_exception(f'{what} {failure.object!r}', failure.exc_value)
+
+
+def _print_exception(sentence: str, error: BaseException | None) -> None:
+    # Imported here because the executables need this module before their other imports.
+    from sdf_pose_bridge.ros.log_lines import line_from_text, lines_from_traceback
+    lines = [f'sdf_pose_bridge: {line_from_text(sentence)}', *lines_from_traceback(error)]
+    print(*lines, sep='\n', file=sys.stderr, flush=True)

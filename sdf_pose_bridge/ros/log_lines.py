@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from itertools import compress
+import sys
 import time
 import traceback
 from typing import Any
@@ -68,8 +69,15 @@ def line_from_text(text: object) -> str:
 
 def text_about_defect(place: str) -> str:
     """Return the exception that is being handled; its traceback is indented below a line."""
-    lines = [line_from_text(each) for each in traceback.format_exc().splitlines()[-MOST_PROBLEMS:]]
-    return '\n    '.join([f'internal error in {place}: {lines[-1]}', *lines])
+    lines = lines_from_traceback(sys.exc_info()[1])
+    return '\n'.join([f'internal error in {place}: {lines[-1].strip()}', *lines])
+
+
+def lines_from_traceback(error: BaseException | None) -> list[str]:
+    """Return the end of the traceback of an exception, indented, so that it forges no line."""
+    place = error.__traceback__ if error else None
+    text = ''.join(traceback.format_exception(None, error, place))
+    return [f'    {line_from_text(each)}' for each in text.splitlines()[-MOST_PROBLEMS:]]
 
 
 def lines_from_error(error: Exception) -> list[str]:

@@ -17,7 +17,7 @@ from rclpy.subscription import Subscription
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from sdf_pose_bridge.ros.background import result_from_executor
-from sdf_pose_bridge.ros.cdr import LONGEST_READ_S, POSE_TYPES, poses_from_bytes, TF_MESSAGE
+from sdf_pose_bridge.ros.cdr import MOST_BYTES, POSE_TYPES, poses_from_bytes, TF_MESSAGE
 from sdf_pose_bridge.ros.log_lines import names_in_line
 from sdf_pose_bridge.ros.published_frames import PublishedFrames, TF, TF_STATIC
 from sdf_pose_bridge.ros.publishers import Topic
@@ -34,6 +34,10 @@ TF_PERIOD_S = 30.0
 _MOST_WAITING = 100
 """Largest number of messages that wait in a subscription, those of this node included; then new
 ones replace the oldest."""
+
+_MOST_BYTES_READ = 3 * MOST_BYTES
+"""Number of bytes after which a look reads no more messages, as the loader waits meanwhile; a
+megabyte takes about 0.04 s."""
 
 _UNKNOWN_NODE = '_NODE_NAME_UNKNOWN_'
 """The name of a node in the middleware (rmw_dds_common) until it is discovered."""
@@ -65,7 +69,8 @@ class OtherPublishers:
         """
         Read what has come since the last call, and look for other publishers.
 
-        Of more messages than can be read in a short time, the others are not read.
+        Of more messages than can be read in a short time, the others are not read. A message is
+        read to its end, as a latched one does not come again.
 
         :param frames: the frames that this node publishes.
         :param scene: their scene.
@@ -111,22 +116,21 @@ class OtherPublishers:
                     self._node.destroy_subscription, self._subscriptions.pop(topic)))
 
     def _read(self, own_stamps_ns: Collection[int]) -> None:
-        ends_at = time.monotonic() + LONGEST_READ_S
+        bytes_left = _MOST_BYTES_READ
         for topic, subscription in self._subscriptions.items():
             for _ in range(_MOST_WAITING):
                 taken = take_message(subscription)
                 if taken is None:
                     break
-                with contextlib.suppress(ValueError):  # it is too large, or not from a ROS node
-                    self._compare(topic, taken[0], own_stamps_ns, ends_at)
+                data, _ = taken
+                if bytes_left > 0 and len(data) <= MOST_BYTES:
+                    bytes_left -= len(data)
+                    with contextlib.suppress(ValueError):  # it is not from a ROS node
+                        self._compare(topic, data, own_stamps_ns)
 
-    def _compare(
-        self, topic: Topic, data: bytes, own_stamps_ns: Collection[int], ends_at: float,
-    ) -> None:
+    def _compare(self, topic: Topic, data: bytes, own_stamps_ns: Collection[int]) -> None:
         """Find the frames in a message of another node that this node publishes too."""
         for pose in poses_from_bytes(data, POSE_TYPES[TF_MESSAGE]):
-            if time.monotonic() > ends_at:
-                return
             child, other = pose.child_frame_id.lstrip('/'), pose.frame_id.lstrip('/')
             parent = self._parents.get(child)
             # On /tf, another node may give the same stamps to the same frames.

@@ -133,9 +133,8 @@ def run(args: Sequence[str], program_name: str, reader: SceneReader) -> int:
             print(program.usage)
             return 0
         if len(words) > program.takes_file:
-            _complain(
-                program, f'the argument "{words[program.takes_file]}" is not understood\n\n'
-                f'{program.usage}')
+            _complain(program, f'the argument "{words[program.takes_file]}" is not understood')
+            print(f'\n{program.usage}', file=sys.stderr)
             return 1
         node = Node(program.node_name)
         parameter_services = ParameterServices(node)
@@ -258,4 +257,4 @@ def _sentence_from_ros_error(error: RuntimeError) -> str:
 
 
 def _complain(program: Program, sentence: str) -> None:
-    print(f'{program.node_name}: {sentence}', file=sys.stderr)
+    print(f'{program.node_name}: {line_from_text(sentence)}', file=sys.stderr)

@@ -85,6 +85,14 @@ def test_the_values_describe_what_is_served_and_what_is_wrong(status_of, tmp_pat
         'first model not reported': '', 'problems of topics': '0'}
 
 
+def test_text_of_others_is_escaped(status_of):
+    name = 'a\n\x1b[2J'
+    for states in (StateReport([name], models=[name]), StateReport(problems=[name])):
+        status = status_of(with_lights(1).replace('"x"', '"&#10;x"'), states=states)
+        assert all(text.isprintable() for text in (
+            status.message, *(each.value for each in status.values)))
+
+
 def test_the_topic_is_there_while_it_is_switched_on(make_node):
     node = make_node('bridge')
     diagnostics = Diagnostics(node, tuple)

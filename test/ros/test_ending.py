@@ -40,14 +40,17 @@ def test_without_memory_the_process_ends_with_one_line(code):
 
 
 def test_a_thread_that_fails_ends_the_process_with_a_traceback():
-    done = ended(IN_THREAD, 'KeyError("why")')
+    done = ended(IN_THREAD, r'ValueError("\x1b[2J\n[FATAL] why")')
     assert done.returncode == 1
-    assert 'has failed, so the node ends\nTraceback' in done.stderr
-    assert "KeyError: 'why'" in done.stderr
+    first, second, *lines = done.stderr.splitlines()
+    assert first.endswith('has failed, so the node ends')
+    assert second == '    Traceback (most recent call last):'
+    assert lines[-2:] == [r'    ValueError: \x1b[2J', '    [FATAL] why']
 
 
 @pytest.mark.parametrize(('code', 'error'), [
-    (IN_THREAD, 'SystemExit'), ('Fails()', 'KeyError')])
+    (IN_THREAD, 'SystemExit'), ('Fails()', r'ValueError("\x1b[2J")')])
 def test_other_ends_of_a_thread_and_defects_that_python_reports_end_nothing(code, error):
     done = ended(code, error)
     assert (done.returncode, done.stdout) == (0, 'goes on\n')
+    assert '\x1b' not in done.stderr

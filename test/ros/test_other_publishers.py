@@ -147,21 +147,23 @@ def test_other_frames_and_the_own_ones_are_not_reported(looking):
     assert 'with the parent "odom"' in line
 
 
-def test_messages_are_read_for_a_limited_time(looking, monkeypatch):
-    taken, take_message = [], other_publishers.take_message
+def test_few_bytes_are_read_at_once_but_each_message_to_its_end(looking, monkeypatch):
+    sizes, take_message = [0], other_publishers.take_message
 
     def take(subscription):
-        taken.append(take_message(subscription))
-        return taken[-1]
+        taken = take_message(subscription)
+        sizes.append(len(taken[0]) if taken else 0)
+        return taken
 
     monkeypatch.setattr(other_publishers, 'take_message', take)
-    monkeypatch.setattr(other_publishers, 'LONGEST_READ_S', 0.0)
-    looking.send('tool', 'odom')
-    looking.look_until(lambda: any(taken))
-    monkeypatch.undo()
+    monkeypatch.setattr(other_publishers, '_MOST_BYTES_READ', 0)
+    parents = {**dict.fromkeys(map(str, range(8000)), 'map'), 'tool': 'odom'}
+    looking.send_all(parents)
+    looking.look_until(lambda: max(sizes) > 100_000)
     assert not looking.lines
-    looking.look_until(
-        lambda: looking.lines, between=lambda: looking.send('tool', 'odom'))
+    # More than the message of the node itself.
+    monkeypatch.setattr(other_publishers, '_MOST_BYTES_READ', 1000)
+    looking.look_until(lambda: looking.lines, between=lambda: looking.send_all(parents))
 
 
 def test_after_other_frames_are_published_latched_messages_are_read_again(looking):
