@@ -11,13 +11,13 @@ import subprocess
 import sys
 import threading
 
+from deadline import DEADLINE_S
 import pytest
 
 from sdf_pose_bridge import limited_process
 from sdf_pose_bridge.limited_process import LimitedProcess, ProcessEndedError
 from sdf_pose_bridge.process_limits import Allowance, LimitExceededError
 
-DEADLINE_S = 60.0
 AMPLE = Allowance(processor_s=DEADLINE_S, memory_bytes=2_000_000_000)
 SHORT = AMPLE._replace(processor_s=0.5)
 SPIN = 'while True: pass'
@@ -219,7 +219,9 @@ def test_a_process_that_ends_before_it_begins_is_an_error(function, message):
 
 def test_a_process_that_is_stopped_while_it_is_busy_is_killed(process, busy, monkeypatch):
     monkeypatch.setattr(limited_process, 'WAITING_S', 0.0)
-    call, pid = busy(SHORT, 'import signal; signal.raise_signal(signal.SIGSTOP)')
+    # The time is over before the caller knows of the process.
+    at_once = AMPLE._replace(processor_s=0.0)
+    call, pid = busy(at_once, 'import signal; signal.raise_signal(signal.SIGSTOP)')
     with pytest.raises(ProcessEndedError, match=NO_ANSWER), call:
         call.result()
     assert has_ended(pid)

@@ -6,6 +6,7 @@ import html
 import re
 from socket import create_connection
 
+from deadline import DEADLINE_S
 import pytest
 
 pytest.importorskip('viser', reason='needs viser')
@@ -82,6 +83,6 @@ def test_each_server_has_its_own_secret():
 def test_connection_that_is_opened_in_advance_does_not_keep_it_from_ending(monkeypatch):
     monkeypatch.setattr(server_module, '_LONGEST_HANDSHAKE_S', 0.1)
     server, _ = server_for_its_owner(0, 'a.sdf')
-    with create_connection(('127.0.0.1', server.get_port()), timeout=8.0) as connection:
+    with create_connection(('127.0.0.1', server.get_port()), timeout=DEADLINE_S) as connection:
         assert connection.recv(1) == b''
     server.stop()
