@@ -22,7 +22,6 @@ from sdf_pose_bridge.geometry.poses import (
     pose_products,
     PoseArray,
     relative_pose,
-    transformed_points,
 )
 from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
 from sdf_pose_bridge.problems import Problems
@@ -158,18 +157,18 @@ def _place_automatic_inertials(root_poses: PoseArray, elements: Elements) -> dic
     collisions_of = defaultdict[int, list[int]](list)
     for index in np.flatnonzero(elements.kinds == Kind.COLLISION).tolist():
         collisions_of[int(elements.parents[index])].append(index)
-    inertials = {}
+    rotations, inertials = matrix_from_quaternion(root_poses[:, 3:]), {}
     for index, automatic in elements.automatic_inertials.items():
         link, masses = int(elements.parents[index]), np.array(automatic.masses_kg)
-        poses = root_poses[collisions_of[link]]
-        to_link = matrix_from_quaternion(root_poses[link, 3:]).T
-        points = transformed_points(
-            poses, np.array([(0.0, 0.0, solid.center_z_m) for solid in automatic.solids]))
+        collisions, to_link = collisions_of[link], rotations[link].T
+        heights = np.array([solid.center_z_m for solid in automatic.solids])
+        points = root_poses[collisions, :3] + (
+            heights[:, np.newaxis] * rotations[collisions, :, 2])
         total_kg = float(masses.sum())
         root_poses[index] = root_poses[link]
         if total_kg:
             root_poses[index, :3] = masses @ points / total_kg
-        axes = to_link @ matrix_from_quaternion(poses[:, 3:])
+        axes = to_link @ rotations[collisions]
         moments = masses[:, np.newaxis] * [solid.moments_m2 for solid in automatic.solids]
         matrix = moved_moments(
             axes * moments[:, np.newaxis] @ axes.transpose(0, 2, 1), masses,
