@@ -93,6 +93,7 @@ class Problems:
     def count_more(self, errors: int, warnings: int) -> None:
         """Count problems without keeping them."""
         self._errors.more += errors
+        self.error_count += errors
         self._warnings.more += warnings
 
     def keeps_errors(self) -> bool:

@@ -18,7 +18,7 @@ from sdf_pose_bridge.errors import Place, SdfError, SdfWarning
 from sdf_pose_bridge.names import printable, shortened
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.include.uris import index_of_entries, resource_finder
+from sdf_pose_bridge.sdformat.include.uris import resource_finder
 
 _END_OF_FOLDER = re.compile('(?<=[^/:])/')
 """The end of a package, model or folder in a URI."""
@@ -78,7 +78,7 @@ def _doubts_about_shapes(scene: Scene, resource_paths: Sequence[str]) -> tuple[S
             key = shape.mesh_uri, place.file
             places[key] = min(place, places.get(key, place), key=lambda each: each.line)
     missing: defaultdict[tuple[str, str], list[str]] = defaultdict(list)
-    path_from_uri, names_in = cache(finder.path_from_uri), cache(index_of_entries)
+    path_from_uri = cache(finder.path_from_uri)
     waiting = iter(sorted(places, key=lambda key: places[key].line))
     for uri, file in waiting:
         # Most missing files are in missing folders, of which there are fewer. Each model of Fuel
@@ -94,7 +94,7 @@ def _doubts_about_shapes(scene: Scene, resource_paths: Sequence[str]) -> tuple[S
         others = f', like {len(uris) - 1} more of "{shortened(folder)}"' if uris[1:] else ''
         problems.warning(
             f'the mesh "{shortened(uris[0])}" is not found{others}: '
-            f'{finder.reason_not_found(uris[0], file, names_in)}', places[uris[0], file])
+            f'{finder.reason_not_found(uris[0], file)}', places[uris[0], file])
     if rest := list(waiting):
         problems.warning(
             f'this mesh and those that follow, {len(rest)} in all, are not looked for, as '

@@ -84,7 +84,6 @@ def elements_from_tree(
     :return: the elements. An element with an error is kept if possible, so that further errors are
         found and none only follows from the first.
     """
-    sources = sources.of_unchanged_trees()
     if sources.may_hold_scoped_names:
         check_scoped_names(root, sources)
     path = sources.path(root)
@@ -118,7 +117,6 @@ class ElementReader:
     ) -> None:
         self._sources = sources
         self._reads_plugins = plugins
-        self._most_depth = sources.usage.limits.depth
         self._table = ElementsBuilder(sources.paths, has_shapes=shapes)
         self._parts_of_actors = ElementsBuilder(sources.paths)
         """Links and joints of actors with their content, which are checked, but have no frames."""
@@ -211,8 +209,7 @@ class ElementReader:
             missing_includes = scope.table.details['missing_includes']
             missing_includes.setdefault(parent, {}).update(self._sources.origin(xml).missing)
             return
-        if depth > self._most_depth:
-            self._sources.check_depth(depth, xml)
+        self._sources.check_depth(depth, xml)
         definitions, is_checked = definition.children, scope.is_checked
         for child in xml if with_children else ():
             child_definition = definitions.get(child.tag)

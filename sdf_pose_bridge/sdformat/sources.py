@@ -30,7 +30,6 @@ from sdf_pose_bridge.sdformat.xml_tree import (
     XmlElement,
 )
 
-_MOST_PLACES_REMEMBERED = 1000
 _NUMBER_OF_ELEMENTS = etree.XPath('count(descendant-or-self::*)')
 
 PARAMS_TAG = 'experimental:params'
@@ -99,8 +98,6 @@ class Sources:
         self._origins: dict[XmlElement, Origin] = {}
         self._lines: dict[XmlElement, int] = {}
         """The lines of elements for which lxml has another line or none."""
-        self._places: dict[XmlElement, tuple[str, str]] | None = None
-        """The files and paths of elements with problems in them, in trees that do not change."""
 
     def with_own_problems(self) -> Sources:
         """Return the same sources with separate problems, which are added to the load later."""
@@ -108,25 +105,31 @@ class Sources:
         part.problems = Problems(self.paths, parent=self.problems)
         return part
 
-    def of_unchanged_trees(self) -> Sources:
-        """Return a copy that remembers places, which take long to find for deep or long names."""
-        part = copy.copy(self)
-        part._places = {}  # noqa: SLF001
-        return part
-
     def error(self, error_class: type[SdfError], xml: XmlElement, message: str) -> None:
         """Add an error about an element to the problems."""
-        self.problems.error(error_class(message, self.place(xml)))
+        self._add_error(error_class, message, xml, None)
 
     def error_in_name(self, error_class: type[SdfError], xml: XmlElement, message: str) -> None:
         """Add an error about the name of an element, which an include may have given to it."""
-        self.problems.error(error_class(message, self.origin(xml).include or self.place(xml)))
+        self._add_error(error_class, message, xml, self.origin(xml).include)
+
+    def _add_error(
+        self, error_class: type[SdfError], message: str, xml: XmlElement, place: Place | None,
+    ) -> None:
+        if self.problems.keeps_errors():
+            self.problems.error(error_class(message, place or self.place(xml)))
+        else:
+            # The place of a deep element takes long to find.
+            self.problems.count_more(errors=1, warnings=0)
 
     def warning(
         self, xml: XmlElement, message: str, code: str = 'WARNING', *, is_for_gazebo: bool = False,
     ) -> None:
         """Add a warning about an element, as :meth:`Problems.warning`."""
-        self.problems.warning(message, self.place(xml), code, is_for_gazebo=is_for_gazebo)
+        if self.problems.keeps_warnings():
+            self.problems.warning(message, self.place(xml), code, is_for_gazebo=is_for_gazebo)
+        else:
+            self.problems.count_more(errors=0, warnings=1)
 
     def check_depth(self, depth: int, xml: XmlElement) -> None:
         """Raise a LimitError if the depth of an element exceeds the limit."""
@@ -184,7 +187,7 @@ class Sources:
     def path(self, xml: XmlElement) -> str:
         """Return the path of the file of an element."""
         origins = (self._origins.get(each, _PARSED) for each in with_ancestors(xml))
-        return next(origin.file for origin in origins if origin.file is not None)
+        return next((origin.file for origin in origins if origin.file is not None), '')
 
     def line(self, xml: XmlElement) -> int:
         """Return the line in which an element begins, from 1; 0 if it is not known."""
@@ -192,22 +195,10 @@ class Sources:
 
     def place(self, xml: XmlElement) -> Place:
         """Return the file and the line of an element, and its path in the tree."""
-        file, element = self._file_and_path(xml)
-        return Place(self.origin(xml).pose_file or file, self.line(xml), element)
-
-    def _file_and_path(self, xml: XmlElement) -> tuple[str, str]:
-        parent, known = xml.getparent(), self._places
-        if parent is None:
-            outer = '', ''
-        elif known is not None and parent in known:
-            outer = known[parent]
-        else:
-            outer = self._file_and_path(parent)
-            if known is not None:
-                if len(known) == _MOST_PLACES_REMEMBERED:
-                    known.clear()
-                known[parent] = outer
-        return self.origin(xml).file or outer[0], f'{outer[1]}/{_step(xml)}'
+        steps = [f'/{_step(each)}' for each in with_ancestors(xml)]
+        return Place(
+            self.origin(xml).pose_file or self.path(xml), self.line(xml),
+            ''.join(reversed(steps)))
 
     def copy_of(self, xml: XmlElement, user: XmlElement, **changes: Any) -> XmlElement:
         """

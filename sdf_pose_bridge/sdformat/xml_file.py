@@ -39,7 +39,7 @@ from sdf_pose_bridge.sdformat.templates import hint_about_template
 from sdf_pose_bridge.sdformat.xml_text import before_zero_byte, repaired, text_from_bytes
 from sdf_pose_bridge.sdformat.xml_tree import is_foreign, WHITE_SPACE, XmlElement
 
-_PASSING = frozenset({
+_TEMPORARY = frozenset({
     errno.EAGAIN, errno.EINTR, errno.EIO, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.ESTALE,
     errno.ETIMEDOUT})
 
@@ -144,8 +144,8 @@ def bytes_from_file(path: str, usage: Usage, *, allows_pipe: bool = False) -> by
             return text
     except (OSError, ValueError) as error:  # ValueError: a path with a zero byte
         msg = f'the file cannot be read: {getattr(error, "strerror", None) or error}{_cure(path)}'
-        is_passing = isinstance(error, OSError) and error.errno in _PASSING
-        raise (TemporaryReadError if is_passing else FileReadError)(msg, place) from error
+        is_temporary = isinstance(error, OSError) and error.errno in _TEMPORARY
+        raise (TemporaryReadError if is_temporary else FileReadError)(msg, place) from error
 
 
 def _cure(path: str) -> str:

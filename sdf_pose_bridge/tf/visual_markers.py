@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -18,12 +17,7 @@ from sdf_pose_bridge.problems import MOST_PROBLEMS, Problems
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.sdformat.include.uris import (
-    index_of_entries,
-    NamesIn,
-    resource_finder,
-    ResourceFinder,
-)
+from sdf_pose_bridge.sdformat.include.uris import resource_finder, ResourceFinder
 from sdf_pose_bridge.sdformat.shape_types import Primitive
 from sdf_pose_bridge.sdformat.shapes import Shape
 from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadRequest
@@ -79,7 +73,7 @@ def visual_markers_from_scene(
     """
     is_shown = (
         elements_in_model(scene, model) & (scene.roots == 0) & (scene.kinds == Kind.VISUAL))
-    problems, names_in = Problems(scene.files), cache(index_of_entries)
+    problems = Problems(scene.files)
     hidden: dict[tuple[str, int, str], list[int]] = {}
     markers: list[VisualMarker] = []
     point_count = 0
@@ -91,7 +85,7 @@ def visual_markers_from_scene(
         place = scene.place(element)
         # Further reasons are only counted.
         found = _markers_from_shape(
-            shape, place.file, finder, names_in if len(hidden) < MOST_PROBLEMS else None)
+            shape, place.file, finder, has_reason=len(hidden) < MOST_PROBLEMS)
         if frame == NO_PARENT and not isinstance(found, str):
             found = 'neither its link nor a frame above that in TF is published'
         if isinstance(found, str):
@@ -154,14 +148,13 @@ def markers_from_text(
 
 
 def _markers_from_shape(
-    shape: Shape, file: str, finder: ResourceFinder, names_in: NamesIn | None,
+    shape: Shape, file: str, finder: ResourceFinder, *, has_reason: bool,
 ) -> list[VisualMarker] | str:
     """Return the markers of a shape in the frame of its visual, or why it cannot be shown."""
     if shape.type == 'mesh':
         uri = finder.uri_for_others(shape.mesh_uri, file)
         if uri is None:
-            reason = '' if names_in is None else (
-                f': {finder.reason_not_found(shape.mesh_uri, file, names_in)}')
+            reason = f': {finder.reason_not_found(shape.mesh_uri, file)}' if has_reason else ''
             return f'the mesh "{shortened(shape.mesh_uri)}" is not found{reason}'
         return [VisualMarker('MESH_RESOURCE', shape.mesh_scale, mesh_resource=uri)]
     if shape.reason_without_surface:

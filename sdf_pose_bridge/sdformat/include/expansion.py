@@ -33,7 +33,6 @@ from sdf_pose_bridge.errors import (
 from sdf_pose_bridge.names import (
     is_reserved,
     listed,
-    NameIndex,
     ROOT_FRAME,
     SEPARATOR,
     shortened,
@@ -43,7 +42,7 @@ from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.include.manifests import model_file_from_directory, ModelFile
 from sdf_pose_bridge.sdformat.include.merge import merge, ModelByItself, ModelCheck
 from sdf_pose_bridge.sdformat.include.params import apply_params, definition_in_tree, TOP_TAGS
-from sdf_pose_bridge.sdformat.include.uris import index_of_entries, ResourceFinder
+from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
 from sdf_pose_bridge.sdformat.reader import ElementReader
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.values import TRUE_TEXTS
@@ -88,7 +87,6 @@ class IncludeExpansion:
         self._finder = finder
         # Not a cache of the method, which only a search for garbage would free.
         self._reasons: dict[tuple[str, str], str] = {}
-        self._names_in = cache(index_of_entries)
         self._real_path = cache(os.path.realpath)
         self._sources = sources
         self._reader = ElementReader(sources)
@@ -190,12 +188,8 @@ class IncludeExpansion:
             # Others are only counted.
             is_kept = problems.keeps_warnings() if self._skips_missing else problems.keeps_errors()
             self._reasons[uri, file] = self._finder.reason_not_found(
-                uri, file, self._names_for_hint) if is_kept else ''
+                uri, file, has_hint=problems.allows_hint()) if is_kept else ''
         return self._reasons[uri, file]
-
-    def _names_for_hint(self, directories: tuple[str, ...]) -> NameIndex:
-        is_allowed = self._sources.problems.allows_hint()
-        return self._names_in(directories if is_allowed else ())
 
     def _model_file(self, directory: str) -> ModelFile | str:
         """Return the model file of a directory, read once, or why there is none."""

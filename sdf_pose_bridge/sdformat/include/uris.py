@@ -9,12 +9,13 @@ Nothing is ever downloaded.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import cache
 from itertools import islice
 import os
 from pathlib import Path
 import re
 import shlex
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 from urllib.parse import unquote, urlsplit
 
 from sdf_pose_bridge.errors import AddressError
@@ -62,12 +63,9 @@ def _entries(directory: str) -> list[str]:
         return []
 
 
-def index_of_entries(directories: tuple[str, ...]) -> NameIndex:
+def _index_of_entries(directories: tuple[str, ...]) -> NameIndex:
     """Return the names of all files and directories in some directories."""
     return NameIndex(entry for each in directories for entry in _entries(each))
-
-
-NamesIn: TypeAlias = Callable[[tuple[str, ...]], NameIndex]
 
 
 class ResourceFinder(NamedTuple):
@@ -81,6 +79,8 @@ class ResourceFinder(NamedTuple):
     """Installation prefixes of ROS packages."""
     fuel_cache: str
     """Directory of the models that Gazebo has downloaded."""
+    index_of_entries: Callable[[tuple[str, ...]], NameIndex]
+    """Returns the names in some directories for hints, each listed once."""
 
     def path_from_uri(self, uri: str, including_file: str) -> str | None:
         """
@@ -170,14 +170,11 @@ class ResourceFinder(NamedTuple):
         msg = f'"{address}" {fault}'
         raise AddressError(msg)
 
-    def reason_not_found(
-        self, uri: str, including_file: str,
-        names_in: NamesIn = index_of_entries,
-    ) -> str:
+    def reason_not_found(self, uri: str, including_file: str, *, has_hint: bool = True) -> str:
         """
         Return the reason why :meth:`path_from_uri` finds no path for a URI, with a remedy.
 
-        :param names_in: returns the names in folders that a message may suggest.
+        :param has_hint: whether the remedy may be the nearest name.
         """
         scheme, name = _scheme_and_name(uri)
         if scheme in _WEB:
@@ -188,7 +185,7 @@ class ResourceFinder(NamedTuple):
             return 'it comes with Gazebo Classic, and no frame needs it'
         folder, missing = self._deepest_folder(uri, including_file)
         if folder:
-            hint = _hint_about_missing(missing, (folder,), names_in)
+            hint = self._hint_about_missing(missing, (folder,), has_hint=has_hint)
             return f'"{folder}" has no "{missing}"{hint}'
         directories = [*dict.fromkeys(
             each.directory or '.' for each in self._candidates(uri, including_file)
@@ -200,8 +197,17 @@ class ResourceFinder(NamedTuple):
         elsewhere = _directory_near(including_file, first)
         if elsewhere:
             return f'{reason}, but in "{elsewhere}"; add that to resource_paths'
-        hint = '' if rest else _hint_about_missing(first, tuple(directories), names_in)
+        hint = '' if rest else self._hint_about_missing(
+            first, tuple(directories), has_hint=has_hint)
         return f'{reason}; resource_paths and GZ_SIM_RESOURCE_PATH add directories{hint}'
+
+    def _hint_about_missing(
+        self, name: str, directories: tuple[str, ...], *, has_hint: bool,
+    ) -> str:
+        """Return the template of a missing file, or else the nearest name."""
+        hints = (hint_about_missing_file(f'{each}/{name}') for each in directories)
+        template = next(filter(None, hints), '')
+        return template or (self.index_of_entries(directories).hint(name) if has_hint else '')
 
     def _deepest_folder(self, uri: str, including_file: str) -> tuple[str, str]:
         """
@@ -303,7 +309,7 @@ def resource_finder(
         tuple(paths('AMENT_PREFIX_PATH')),
         environment.get('GZ_FUEL_CACHE_PATH') or os.path.join(  # noqa: PTH118
             environment.get('HOME', '~'), '.gz', 'fuel'),
-    )
+        cache(_index_of_entries))
 
 
 def _scheme_and_name(uri: str) -> tuple[str, str]:
@@ -339,9 +345,3 @@ def _directory_near(file: str, name: str) -> str:
             if name and os.path.isdir(f'{directory}/{name}'):  # noqa: PTH112
                 return directory
     return ''
-
-
-def _hint_about_missing(name: str, directories: tuple[str, ...], names_in: NamesIn) -> str:
-    """Return the template of a missing file, or else the nearest name, as the end of a message."""
-    hints = (hint_about_missing_file(f'{each}/{name}') for each in directories)
-    return next(filter(None, hints), '') or names_in(directories).hint(name)

@@ -27,7 +27,7 @@ from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
 from sdf_pose_bridge.sdformat.urdf.values import (
     is_true,
     Numbers,
-    numbers_of,
+    numbers_of_attributes,
     pose_from_xyz_rpy,
     text_from_numbers,
 )
@@ -212,7 +212,7 @@ def _robot_origin(root: XmlElement, sources: Sources, errors: Sources) -> Pose:
         return Pose()
     for rule in _rules('urdf_origin'):
         try:
-            numbers.update(numbers_of(origin, [rule]))
+            numbers.update(numbers_of_attributes(origin, [rule]))
         except ValueError as error:
             words = [*filter(None, origin.get(rule.name, '').split(' '))]
             read = [number for word in words for number in number_from_word(word)]
@@ -233,9 +233,10 @@ def _link(name: str, xml: XmlElement, sources: Sources) -> RobotLink:
         if inertial_xml is not None:
             inertial = RobotInertial()
             inertial = RobotInertial(origin=_origin(inertial_xml, sources))
-            mass = numbers_of(_required_child(inertial_xml, 'mass'), _rules('urdf_mass'))
+            mass = numbers_of_attributes(
+                _required_child(inertial_xml, 'mass'), _rules('urdf_mass'))
             inertial = inertial._replace(mass=mass['value'][0])
-            inertia = numbers_of(
+            inertia = numbers_of_attributes(
                 _required_child(inertial_xml, 'inertia'), _rules('urdf_inertia'))
             inertial = inertial._replace(moments=tuple(inertia[name][0] for name in MOMENTS))
         for shape in (*child_elements(xml, 'visual'), *child_elements(xml, 'collision')):
@@ -272,7 +273,7 @@ def _joint(
                 tag == 'axis' and joint_type is not None and not joint_type.has_axis):
             continue
         try:
-            values[tag] = numbers_of(part, definition.attributes.values())
+            values[tag] = numbers_of_attributes(part, definition.attributes.values())
         except ValueError as error:
             errors.error(ParsingError, part, str(error))
             return None
@@ -297,7 +298,7 @@ def _required_child(xml: XmlElement, tag: str) -> XmlElement:
 
 def _origin(xml: XmlElement, sources: Sources) -> Pose:
     origin = first_child(xml, 'origin')
-    numbers = {} if origin is None else numbers_of(origin, _rules('urdf_origin'))
+    numbers = {} if origin is None else numbers_of_attributes(origin, _rules('urdf_origin'))
     return _pose_of_origin(origin, numbers, sources)
 
 
@@ -316,7 +317,7 @@ def _shape(xml: XmlElement, sources: Sources) -> RobotShape:
     if geometry is None or geometry.tag not in _SHAPES:
         msg = f'the <geometry> of <{written_tag(xml)}> must hold one of {", ".join(_SHAPES)}'
         raise ValueError(msg)
-    numbers = numbers_of(geometry, _rules(f'urdf_{geometry.tag}'))
+    numbers = numbers_of_attributes(geometry, _rules(f'urdf_{geometry.tag}'))
     material = first_child(xml, 'material')
     if xml.tag == 'visual' and material is not None and material.get('name') is None:
         msg = '<material> has no name'

@@ -37,7 +37,7 @@ def is_true(xml: XmlElement) -> bool:
     return value.strip(WHITE_SPACE).lower() in ('true', 'yes', '1')
 
 
-def numbers_of(xml: XmlElement, rules: Iterable[Item]) -> dict[str, list[float]]:
+def numbers_of_attributes(xml: XmlElement, rules: Iterable[Item]) -> dict[str, list[float]]:
     """
     Read the attributes of an element that are numbers, as urdfdom does (``strToDouble``).
 
