@@ -86,8 +86,7 @@ def elements_from_tree(
     """
     if sources.may_hold_scoped_names:
         check_scoped_names(root, sources)
-    path = sources.path(root)
-    return ElementReader(sources, path, shapes=shapes, plugins=plugins).elements(root)
+    return ElementReader(sources, shapes=shapes, plugins=plugins).elements(root)
 
 
 class _Scope(NamedTuple):
@@ -105,15 +104,10 @@ class _Scope(NamedTuple):
 
 
 class ElementReader:
-    """
-    Reads elements by their definitions.
-
-    :param sources: takes errors and warnings.
-    :param path: the file of the outermost element, for :meth:`elements`.
-    """
+    """Reads elements by their definitions; errors and warnings are added to the sources."""
 
     def __init__(
-        self, sources: Sources, path: str = '', *, shapes: bool = False, plugins: bool = False,
+        self, sources: Sources, *, shapes: bool = False, plugins: bool = False,
     ) -> None:
         self._sources = sources
         self._reads_plugins = plugins
@@ -121,7 +115,7 @@ class ElementReader:
         self._parts_of_actors = ElementsBuilder(sources.paths)
         """Links and joints of actors with their content, which are checked, but have no frames."""
         self._undefined = UndefinedReporter(sources)
-        self._top = _Scope(self._table, SiblingNames(self._table, sources), path)
+        self._top = _Scope(self._table, SiblingNames(self._table, sources), '')
         """The scope of the outermost element."""
         self._readers_of_details: dict[Kind, tuple[str, Callable[[XmlElement], Any]]] = {
             Kind.MODEL: ('models', _model_details),
@@ -141,13 +135,14 @@ class ElementReader:
     def elements(self, root: XmlElement) -> Elements:
         """Read worlds, and the one model, light or actor that may stand beside them."""
         definition = definition_of('sdf', has_frames=True)
+        top = self._top._replace(path=self._sources.path(root))
         first = ''
         for child in root:
             child_definition = definition.children.get(child.tag)
             if child_definition is None:
                 self._undefined.report_element(child, definition)
             elif child_definition.kind is Kind.WORLD:
-                self._read(child, child_definition, self._top)
+                self._read(child, child_definition, top)
             elif first:
                 self._check_attributes(child, child.keys(), child_definition)
                 error: type[SdfError] = DuplicateNameError
@@ -161,8 +156,8 @@ class ElementReader:
                 first = described(child)
                 index = self._table.add(
                     Kind.ROOT, ROOT_FRAME, NO_ELEMENT, NO_ELEMENT,
-                    self._sources.file_indices[self._top.path], self._sources.line(child))
-                self._read(child, child_definition, self._top._replace(element=index), index)
+                    self._sources.file_indices[top.path], self._sources.line(child))
+                self._read(child, child_definition, top._replace(element=index), index)
         if not self._table.names:
             self._sources.warning(root, 'the file has no world, model, light or actor')
         self._parts_of_actors.elements(self._sources.problems)

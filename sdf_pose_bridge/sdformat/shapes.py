@@ -22,10 +22,11 @@ from sdf_pose_bridge.sdformat.values import (
     boolean_from_text,
     number_of_child,
     numbers_from_text,
-    numbers_of_child,
+    numbers_of,
 )
 from sdf_pose_bridge.sdformat.xml_tree import (
     attribute_of,
+    child_at,
     child_elements,
     first_child,
     value_at,
@@ -134,15 +135,15 @@ def shape_of(xml: XmlElement) -> Shape | None:
     shape = shapes[0]
     tag = str(shape.tag)
     sizes_m = (
-        numbers_of_child(shape, name, size) for name, size in SHAPE_TYPES[tag].sizes_m.items())
+        numbers_of(child_at(shape, name), size) for name, size in SHAPE_TYPES[tag].sizes_m.items())
     transparency = number_of_child(xml, 'transparency', 0.0)
     return Shape(
         type=tag,
         sizes_m=tuple(size_m for each in sizes_m for size_m in each),
-        normal=numbers_of_child(shape, 'normal', _UP) if tag == 'plane' else _UP,
+        normal=numbers_of(child_at(shape, 'normal'), _UP) if tag == 'plane' else _UP,
         mesh_uri=value_at(shape, 'uri') if tag == 'mesh' else '',
         submesh=value_at(shape, 'submesh/name'),
-        mesh_scale=numbers_of_child(shape, 'scale', (1.0, 1.0, 1.0)),
+        mesh_scale=numbers_of(child_at(shape, 'scale'), (1.0, 1.0, 1.0)),
         rgba=_color(xml),
         opacity=1.0 - transparency if 0.0 < transparency <= 1.0 else 1.0,
         is_centered=bool(boolean_from_text(value_at(shape, 'submesh/center'))))

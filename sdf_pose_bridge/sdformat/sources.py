@@ -105,22 +105,20 @@ class Sources:
         part.problems = Problems(self.paths, parent=self.problems)
         return part
 
-    def error(self, error_class: type[SdfError], xml: XmlElement, message: str) -> None:
-        """Add an error about an element to the problems."""
-        self._add_error(error_class, message, xml, None)
-
-    def error_in_name(self, error_class: type[SdfError], xml: XmlElement, message: str) -> None:
-        """Add an error about the name of an element, which an include may have given to it."""
-        self._add_error(error_class, message, xml, self.origin(xml).include)
-
-    def _add_error(
-        self, error_class: type[SdfError], message: str, xml: XmlElement, place: Place | None,
+    def error(
+        self, error_class: type[SdfError], xml: XmlElement, message: str,
+        place: Place | None = None,
     ) -> None:
+        """Add an error about an element to the problems, by default with its place."""
         if self.problems.keeps_errors():
             self.problems.error(error_class(message, place or self.place(xml)))
         else:
             # The place of a deep element takes long to find.
             self.problems.count_more(errors=1, warnings=0)
+
+    def error_in_name(self, error_class: type[SdfError], xml: XmlElement, message: str) -> None:
+        """Add an error about the name of an element, which an include may have given to it."""
+        self.error(error_class, xml, message, self.origin(xml).include)
 
     def warning(
         self, xml: XmlElement, message: str, code: str = 'WARNING', *, is_for_gazebo: bool = False,
@@ -156,11 +154,7 @@ class Sources:
             self.composed_trees.add(root)
 
     def set_source(self, xml: XmlElement, source: XmlElement, **changes: Any) -> None:
-        """
-        Give an element, with the content that has no other source, the place of another one.
-
-        :param changes: as for :meth:`set_origin`.
-        """
+        """Give an element, with the content that has no other source, the place of another one."""
         self.set_origin(xml, file=self.path(source), **changes)
         self._lines[xml] = self.line(source)
 
@@ -201,11 +195,7 @@ class Sources:
             ''.join(reversed(steps)))
 
     def copy_of(self, xml: XmlElement, user: XmlElement, **changes: Any) -> XmlElement:
-        """
-        Copy an element with its content and its places, counted as :meth:`count_copy`.
-
-        :param changes: as for :meth:`set_origin`.
-        """
+        """Copy an element with its content, counted, and its places and other facts."""
         self.count_copy(xml, user)
         result = copy_of(xml)
         if xml.getroottree().getroot() in self.composed_trees:

@@ -261,21 +261,13 @@ def _streamed_numbers(text: str, count: int) -> Sequence[float]:
     return numbers
 
 
-def numbers_of_child(
-    parent: XmlElement, path: str, default: tuple[float, ...],
-) -> tuple[float, ...]:
+def numbers_of(xml: XmlElement | None, default: tuple[float, ...]) -> tuple[float, ...]:
     """
-    Return the numbers in a child element.
+    Return the numbers in an element.
 
-    :param path: as for :func:`~sdf_pose_bridge.sdformat.xml_tree.value_at`.
-    :param default: the numbers if there is no child, or if it has fewer numbers than these.
+    :param default: the numbers if there is no element, or if it has fewer numbers than these.
     :return: as many numbers as there are in the default.
     """
-    return numbers_of(child_at(parent, path), default)
-
-
-def numbers_of(xml: XmlElement | None, default: tuple[float, ...]) -> tuple[float, ...]:
-    """Return the numbers in an element that may be missing, as :func:`numbers_of_child`."""
     if xml is None:
         return default
     numbers = tuple(numbers_from_text(text_of(xml), _TYPES_BY_COUNT[len(default)]))
@@ -283,6 +275,10 @@ def numbers_of(xml: XmlElement | None, default: tuple[float, ...]) -> tuple[floa
 
 
 def number_of_child(parent: XmlElement, path: str, default: float) -> float:
-    """Return the number in a child element, or the default, as :func:`numbers_of_child`."""
-    (number,) = numbers_of_child(parent, path, (default,))
+    """
+    Return the number in a child element, or the default, as :func:`numbers_of`.
+
+    :param path: as for :func:`~sdf_pose_bridge.sdformat.xml_tree.child_at`.
+    """
+    (number,) = numbers_of(child_at(parent, path), (default,))
     return number
