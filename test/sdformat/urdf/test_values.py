@@ -17,7 +17,7 @@ from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.urdf.values import (
     is_true,
-    numbers_of,
+    numbers_of_attributes,
     pose_from_xyz_rpy,
     rpy_by_gz_math,
     rpy_by_urdfdom,
@@ -32,7 +32,7 @@ NO_NUMBERS = ('x', '1m', '1,5', '0x1', '1_0', '1e', '1.5.2', '1e999', 'inf', 'na
 
 def read(content, **attributes):
     rules = Definition('a', content).attributes.values()
-    return numbers_of(etree.Element('a', attributes), rules)
+    return numbers_of_attributes(etree.Element('a', attributes), rules)
 
 
 @pytest.mark.parametrize(('text', 'numbers'), [
