@@ -177,7 +177,7 @@ class JointMotion:
         self.initial_coordinates = np.append(np.zeros(len(dofs)), poses[len(dofs):])
         """The coordinates where the file puts everything."""
         identities = np.tile(Pose(), (len(poses), 1))
-        self._displacements = self.motions(
+        self._displacements = self.displaced_poses(
             identities, np.arange(len(poses), dtype=np.int32), identities)
 
     def coordinates(self, dofs: NDArray[np.integer]) -> NDArray[np.intp]:
@@ -186,9 +186,11 @@ class JointMotion:
         found: NDArray[np.intp] = (count + 7 * (dofs - count))[:, np.newaxis] + np.arange(7)
         return found
 
-    def motions(self, before: PoseArray, dofs: Indices, after: PoseArray) -> DisplacedPoses:
+    def displaced_poses(
+        self, before: PoseArray, dofs: Indices, after: PoseArray,
+    ) -> DisplacedPoses:
         """
-        Return the motions of poses by some degrees of freedom.
+        Return poses that degrees of freedom displace.
 
         :param before: shape (k, 7), the constant poses before them.
         :param dofs: shape (k,), the degrees of freedom.
@@ -283,7 +285,7 @@ class MovingFrames:
         while len(rows):
             previous = motion.previous[dofs]
             is_first = previous == self._last_dofs_of_parents[rows]
-            self._parts.append((rows, motion.motions(
+            self._parts.append((rows, motion.displaced_poses(
                 np.where(is_first[:, np.newaxis], before[rows], identities[rows]), dofs,
                 after[rows])))
             rows, dofs, after = rows[~is_first], previous[~is_first], identities
@@ -295,8 +297,8 @@ class MovingFrames:
         :return: shape (m, 7), pose of each frame in its parent; unit quaternions with w >= 0.
         """
         transforms = np.empty((0, 7))
-        for number, (rows, motions) in enumerate(self._parts):
-            poses = motions.poses(values)
+        for number, (rows, displaced) in enumerate(self._parts):
+            poses = displaced.poses(values)
             if number:
                 transforms[rows] = pose_products(poses, transforms[rows])
             else:
