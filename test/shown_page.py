@@ -126,6 +126,10 @@ def strip_button(text):
     return f"[...document.querySelectorAll('.strip button')].find(l => l.innerText === '{text}')"
 
 
+def press(page, text):
+    page.run(f'{strip_button(text)}.click()')
+
+
 def drag(page):
     """Drag the gizmo of the frame with the hostile name upwards, 11 pixels beside its arrow."""
     wait_until_movable(page)

@@ -14,6 +14,7 @@ from shown_page import (
     is_in_window,
     LABELS,
     point_on_screen,
+    press,
     ROWS,
     select,
     strip_button,
@@ -32,12 +33,12 @@ def test_typed_number_is_the_one_that_is_written(page, shown, number):
     page.wait_for(f"document.querySelector('.difference')?.rows[1].cells[2].innerText "
                   f"=== '{float(number):.4f}'")
     assert page.run(f'{control("x [m]")}.value') == number
-    page.run(f"{strip_button('write to file')}.click()")
+    press(page, 'write to file')
     line = 1 + TEXT[:TEXT.index('1 0 0 0 0 0')].count('\n')
     page.wait_for(f"""document.querySelector('.strip').innerText.includes(
       'written to cell.sdf:{line}')""")
     assert load(shown.file).pose(HOSTILE)[:3] == pytest.approx((float(number), 0, 0), abs=1e-9)
-    page.run(f"{strip_button('undo the last write')}.click()")
+    press(page, 'undo the last write')
     page.wait_for(f"!{strip_button('undo the last write')}")
 
 
@@ -48,7 +49,7 @@ def test_typed_text_that_is_no_number_is_not_written(page, text):
       === "'{text}' is not a number" """)
     page.wait_for(is_in_window(strip_button('cancel')))
     assert page.run(f"{strip_button('write to file')}") is None
-    page.run(f"{strip_button('cancel')}.click()")
+    press(page, 'cancel')
     page.wait_for(f"{control('y [m]')}.value === '0.0000'")
 
 
@@ -93,14 +94,14 @@ def test_frame_is_selected_typed_written_and_cancelled_by_the_keyboard(page, sho
 def test_frame_is_dragged_and_written(page, shown):
     select(page, HOSTILE)
     drag(page)
-    page.run(f"{strip_button('write to file')}.click()")
+    press(page, 'write to file')
     page.wait_for(f"!{strip_button('write to file')}")
     pose = load(shown.file).pose(HOSTILE)
     assert pose[:3] == pytest.approx((1.0, 0.0, 0.1), abs=0.02)
     changed = shown.file.read_text().splitlines()
     assert [line for line in TEXT.splitlines() if line not in changed] == [
         f'  <frame name="{html.escape(HOSTILE)}"><pose>1 0 0 0 0 0</pose></frame>']
-    page.run(f"{strip_button('undo the last write')}.click()")
+    press(page, 'undo the last write')
     page.wait_for(f"!{strip_button('undo the last write')}")
     assert shown.file.read_text() == TEXT
 
@@ -113,7 +114,7 @@ def test_what_moves_is_drawn_and_named_before_it_is_written(sized_page, shown):
     wait_for_name_at(
         sized_page, *point_on_screen(sized_page, (0.6, -0.1, 0.09)), 'arm/base, visual v')
     assert shown.file.read_text() == TEXT
-    sized_page.run(f"{strip_button('cancel')}.click()")
+    press(sized_page, 'cancel')
     wait_for_name_at(
         sized_page, *point_on_screen(sized_page, (0.1, -0.1, 0.09)), 'arm/base, visual v')
     assert sized_page.run("document.querySelector('.moved')") is None
@@ -144,7 +145,7 @@ def test_frame_is_moved_in_a_narrow_window_where_the_panel_is_folded(tab, shown)
     wait_for_name_at(tab, *point_on_screen(tab, (1.0, 0.0, 0.0)), HOSTILE)
     tab.mouse(point_on_screen(tab, (1.0, 0.0, 0.05)))
     drag(tab)
-    tab.run(f"{strip_button('cancel')}.click()")
+    press(tab, 'cancel')
     tab.wait_for(f"!{strip_button('cancel')}")
     assert tab.run(f'{LABELS}.map(label => label.innerText)') == [HOSTILE]
     assert tab.run(f'{ROWS}.length') == 0

@@ -14,7 +14,7 @@ import pytest
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.cli.main import main
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[1]
 PAGES = [ROOT / 'README.md', ROOT / 'CONTRIBUTING.md', *sorted((ROOT / 'docs').glob('*.md'))]
 
 TESTED_ELSEWHERE = {
