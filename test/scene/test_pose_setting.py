@@ -56,6 +56,11 @@ def assert_at(pose, expected):
     (MODEL, 'm::f', 'm::a'),
     (MODEL, 'm::a', ''),
     (MODEL, 'm', ''),
+    # The frame that the pose is relative to is turned.
+    (MODEL.replace('1 0 0 0 0 0', '1 0 0 0.2 0 1'), 'm::f', ''),
+    # Digits that are enough near the placement frame are too few at the model frame.
+    (model_file('<pose>1 2 3 0 1 0</pose>' + posed('link', 'a', '0 0 300 0 0 2'),
+                attributes='placement_frame="a"'), 'm', ''),
     (model_file('<link name="a"/><link name="b"/>' + fixed_joint('j', 'a', 'b')), 'm::j', 'm::a'),
     (model_file('<link name="a"><sensor name="s" type="camera"/></link>'), 'm::a::s', 'm'),
     # The pose of the model is that of its placement frame.
@@ -72,6 +77,14 @@ def test_the_pose_is_what_was_asked_for(change, tmp_path, text, name, relative_t
     made = change(name, relative_to)
     assert made.file.path == str(tmp_path / 'm.sdf')
     assert made.file.undone.new_text == text.encode()
+
+
+def test_a_written_quaternion_has_a_positive_w(change, tmp_path):
+    write_files(tmp_path, m=MODEL.replace('1 0 0 0 0 0', '1 0 0 0 0 -3').replace(
+        '<pose relative_to="a">0 1 0 0 0 1',
+        '<pose relative_to="a" rotation_format="quat_xyzw">0 1 0 0 0 0 1'))
+    text = change('m::f').file.new_text.decode()
+    assert float(text.partition('quat_xyzw">')[2].partition('<')[0].split()[6]) > 0.0
 
 
 def test_what_does_not_depend_on_it_stays_to_the_last_bit(change, tmp_path):
@@ -102,6 +115,9 @@ def test_an_element_of_a_file_that_is_included_twice(change, tmp_path):
         change('x::a', file='w')
     assert caught.value.place == (str(tmp_path / 'm.sdf'), 1, '')
     assert change('x::a', file='w', all_instances=True).file.path == str(tmp_path / 'm.sdf')
+    write_files(tmp_path, m=MODEL.replace('name="m"', 'name="m" placement_frame="f"'))
+    with pytest.raises(PoseNotSetError, match='also places "y::a"'):
+        change('x::a', file='w')
 
 
 def test_a_merged_model_and_what_was_in_it(change, tmp_path):
@@ -151,8 +167,11 @@ def test_what_no_pose_can_say_is_refused(change, tmp_path, text, name, relative_
 
 
 def test_a_file_of_the_cache_of_fuel_is_refused(change, tmp_path, monkeypatch):
-    write_files(tmp_path, m=MODEL)
-    monkeypatch.setenv('GZ_FUEL_CACHE_PATH', str(tmp_path))
+    cache = tmp_path / 'cache'
+    cache.mkdir()
+    write_files(cache, m=MODEL)
+    (tmp_path / 'm.sdf').symlink_to(cache / 'm.sdf')
+    monkeypatch.setenv('GZ_FUEL_CACHE_PATH', str(cache))
     with pytest.raises(PoseNotSetError, match='cache of Gazebo Fuel'):
         change('m::a')
 
