@@ -3,6 +3,7 @@
 """Calls of a simulator, and its answers."""
 
 import sys
+from types import SimpleNamespace
 
 from deadline import wait_until
 import pytest
@@ -10,6 +11,7 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 pytest.importorskip('simulation_interfaces', reason='needs simulation_interfaces')
 
+from moving_models import Models
 from rclpy.service import Service
 from sdf_texts import world_file
 from simulation_interfaces.msg import EntityState, Result
@@ -139,3 +141,50 @@ def test_answers_that_take_long_are_asked_for_less_often(
     spin_until(node, lambda: len(simulator._costs_s) == module._COSTS)
     log = capfd.readouterr().err
     assert log.count('times a second instead of 100, as an answer with 1 pose takes') == 1
+
+
+# What the answers say
+
+@pytest.fixture(name='answer')
+def make_answer(node, simulator):
+    """Takes an answer about models; ``answer(*names)`` returns the values of each message."""
+    models = Models(node)
+    simulator.follow(models.positions, settings_from_values(
+        {'sdf_file': 'a.sdf', 'simulator_rate': 0.0, 'simulator_others': True}))
+
+    def answer(*names):
+        state = EntityState()
+        state.pose.position.x, state.header.stamp.nanosec = 1.0, 5
+        simulator._answers.append(SimpleNamespace(entities=names, states=[state] * len(names)))
+        return {
+            models.positions.names[dof]: (*values[:2], message.frame_id, message.stamp_ns)
+            for message in simulator.messages(models.effects)
+            for dof, values in zip(
+                message.effect.selection.changed, message.values.tolist(), strict=True)}
+    answer.models = models
+    return answer
+
+
+def test_a_nested_model_without_a_pose_keeps_its_place_in_the_model_around_it(answer, capfd):
+    for _ in range(2):
+        assert answer('a') == {'a': (1.0, 0.0, '', 5), 'a/b': (0.0, 3.0, 'a', 5)}
+    assert answer('a', 'a/b')['a/b'] == answer('a', 'a::b')['a/b'] == (1.0, 0.0, '', 5)
+    assert answer() == {}
+    assert capfd.readouterr().err.count('does not give the poses of "a::b"') == 1
+
+
+def test_models_that_two_answers_lack_are_missing_unless_others_send_their_poses(
+        simulator, answer):
+    answer()
+    assert simulator._to_tell == []
+    answer()
+    assert simulator._to_tell == ['a', 'a::b']
+    answer.models.read('a')
+    for _ in range(2):
+        answer()
+    assert simulator._to_tell == ['a::b']
+
+
+def test_other_entities_are_in_order(simulator, answer):
+    answer('z', 'a', 'y')
+    assert simulator.others == ('y', 'z')
