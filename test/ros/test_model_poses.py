@@ -2,17 +2,25 @@
 # SPDX-License-Identifier: Apache-2.0
 """What poses of models change, and the ones that are ignored."""
 
+import math
+
 import numpy as np
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
+from geometry_msgs.msg import PoseStamped
 from moving_models import Models, TURNED
+from rclpy.serialization import serialize_message
 
 from sdf_pose_bridge.errors import JointPositionError
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
 from sdf_pose_bridge.ros.cdr import LONGEST_READ_S, StampedPose
 from sdf_pose_bridge.ros.model_poses import messages_from_poses
 from sdf_pose_bridge.ros.state_messages import MOST_BYTES
+from sdf_pose_bridge.ros.state_topic import StateTopic, TopicKey
+from sdf_pose_bridge.tf.odometry import Odometry
 
 
 @pytest.fixture(name='models')
@@ -85,10 +93,26 @@ def test_the_odometry_of_wheels_counts_from_the_file_whatever_the_parameters_say
     assert models.moved(child='p/a/b/l', frame_id='b/odom') == ('a/b', 1.0, 5.0)
     assert models.moved(child='x', model='a::b', frame_id='b/odom') == ('a/b', 1.0, 5.0)
     assert models.moved(frame_id='a/odom') == ('a', 1.0, 2.0)
+    turned = (1.0, 2.0, 3.0, *quaternion_from_rpy((0.0, 0.0, math.pi / 2.0)))
+    assert models.moved(child='p/a/b/l', frame_id='b/odom', pose=turned) == ('a/b', 1.0, 5.0)
     models.read(frame_id='c/odom')
     log = capfd.readouterr().err
     assert log.count('model_pose_frames has no effect on "b/odom": the odometry of wheels') == 1
     assert log.count('which counts as the root frame by model_pose_frames') == 1
+
+
+def test_odometry_with_an_offset_is_taken_back_in_the_turned_model(models):
+    models.effects.odometry = {(models.effects.models['a'], 'o'): Odometry(
+        Pose(), Pose(0.0, 1.0, 0.0), is_of_wheels=False)}
+    turned = (1.0, 2.0, 3.0, *quaternion_from_rpy((0.0, 0.0, math.pi / 2.0)))
+    assert models.moved(frame_id='o', pose=turned)[1:] == pytest.approx((0.0, 2.0))
+
+
+def test_a_pose_on_a_topic_for_no_single_model_is_ignored(models, capfd):
+    topic = StateTopic(
+        models.source._node, TopicKey('/p', '', 'geometry_msgs/msg/PoseStamped'))
+    assert topic.read(serialize_message(PoseStamped()), models.effects) == ()
+    assert 'no single model is meant' in capfd.readouterr().err
 
 
 def test_a_placement_that_no_model_has_is_reported(make_node, capfd):
