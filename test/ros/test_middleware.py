@@ -14,9 +14,10 @@ from sdf_pose_bridge.ros.middleware import Profile, PROFILES, use_profile
 
 ROOT = Path(__file__).resolve().parents[2]
 JAZZY = {'ROS_DISTRO': 'jazzy'}
-BY_DISTRO = {distro: profile for profile in PROFILES for distro in profile.distros}
+FAST_DDS = [profile for profile in PROFILES if '' in profile.middlewares]
+BY_DISTRO = {distro: profile for profile in FAST_DDS for distro in profile.distros}
 BOTH = pytest.mark.parametrize('distro', BY_DISTRO)
-OLD, NEW = (profile.variable for profile in PROFILES)
+OLD, NEW = (profile.variable for profile in FAST_DDS)
 
 
 @BOTH
@@ -32,6 +33,11 @@ def test_a_choice_of_the_user_is_left_alone(distro, chosen, reason):
     before = dict(environment)
     assert use_profile(environment).endswith(f'is used: {reason}')
     assert environment == before
+
+
+@pytest.mark.parametrize('profile', PROFILES)
+def test_the_file_of_a_profile_is_in_the_package(profile):
+    assert (ROOT / profile.file).is_file()
 
 
 @BOTH

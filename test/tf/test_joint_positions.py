@@ -10,6 +10,7 @@ from sdf_pose_bridge.errors import JointPositionError
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.tf.joint_positions import (
     JointPositions,
+    LARGEST_POSITION,
     leading_dofs,
     scene_at_positions,
     UnreportedJoints,
@@ -191,6 +192,17 @@ def test_the_position_of_a_follower_can_be_given():
     assert values_of(positions) == {'j': 2.0, 'k': 7.0}
 
 
+def test_a_follower_of_a_follower_moves_with_it_unless_that_is_too_far():
+    positions = positions_of(model_file(LINKS + '<link name="d"/>' + joint(
+        ENDS + '<axis><xyz>0 0 1</xyz></axis>', 'j', 'revolute') + following() + joint(
+            '<parent>c</parent><child>d</child>' + MIMIC.format(leader='k', axis='axis'), 'l',
+            'revolute'), version='1.11'))
+    update(positions, j=2.0)
+    assert values_of(positions) == {'j': 2.0, 'k': 4.0, 'l': 8.0}
+    update(positions, j=LARGEST_POSITION)
+    assert values_of(positions) == {'j': LARGEST_POSITION, 'k': 4.0, 'l': 8.0}
+
+
 def test_joints_that_follow_one_another_stop():
     positions = positions_of(model_file(
         LINKS + joint(ENDS + MIMIC.format(leader='k', axis='axis'), 'j', 'revolute')
@@ -201,13 +213,14 @@ def test_joints_that_follow_one_another_stop():
 
 def test_joints_of_the_same_name_continue_in_another_scene():
     before = positions_of(model_file(LINKS + joint(ENDS, 'j', 'revolute')))
-    update(before, j=2.0)
+    update(before, 5, j=2.0)
     after = positions_of(model_file(
         LINKS + joint(ENDS, 'i', 'revolute')
         + joint('<parent>b</parent><child>c</child>', 'j', 'revolute')))
     after.take_over(before)
     assert values_of(after) == {'i': 0.0, 'j': 2.0}
     assert after.is_reported.tolist() == [name == 'j' for name in after.names]
+    assert after.stamps_ns.tolist() == [5, 5]
 
 
 def with_limits(name, lower, upper):
