@@ -228,14 +228,6 @@ def test_a_process_that_is_stopped_while_it_is_busy_is_killed(process, busy, mon
     assert process.call(AMPLE, pow, 2, 2) == 4
 
 
-def test_a_late_process_is_killed_although_nobody_has_read_that_it_began(busy, monkeypatch):
-    monkeypatch.setattr(limited_process, 'WAITING_S', -AMPLE.processor_s)
-    call, pid = busy(AMPLE, 'import signal; signal.pause()')
-    with pytest.raises(ProcessEndedError, match='has not answered'), call:
-        call.result()
-    assert has_ended(pid)
-
-
 def test_a_process_that_is_stopped_in_the_middle_of_its_answer_is_killed(process, monkeypatch):
     monkeypatch.setattr(limited_process, 'WAITING_S', 0.0)
     with pytest.raises(ProcessEndedError, match=NO_ANSWER) as caught:
