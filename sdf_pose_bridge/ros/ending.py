@@ -11,6 +11,7 @@ from __future__ import annotations
 import os
 import sys
 import threading
+from types import TracebackType
 from typing import NoReturn
 
 _NO_MEMORY = b'sdf_pose_bridge: there is not enough memory, so the node ends\n'
@@ -33,6 +34,8 @@ def end_at_failures_of_threads() -> None:
     """
     threading.excepthook = _end_after_exception
     sys.unraisablehook = _end_if_without_memory
+    # Python calls this one if it has no memory for the arguments of the first one.
+    sys.excepthook = _end_at_failure_of_hook
 
 
 def _end_after_exception(failure: threading.ExceptHookArgs) -> None:
@@ -45,6 +48,14 @@ def _end_after_exception(failure: threading.ExceptHookArgs) -> None:
         _print_exception(f'thread "{name}" has failed, so the node ends', failure.exc_value)
     finally:
         os._exit(1)
+
+
+def _end_at_failure_of_hook(
+    error_type: type[BaseException], error: BaseException, place: TracebackType | None,
+) -> None:
+    if error_type is MemoryError:
+        end_without_memory()
+    sys.__excepthook__(error_type, error, place)
 
 
 def _end_if_without_memory(failure: sys.UnraisableHookArgs) -> None:

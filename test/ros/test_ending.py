@@ -39,6 +39,12 @@ def test_without_memory_the_process_ends_with_one_line(code):
     assert (done.returncode, done.stdout, done.stderr) == (1, '', NO_MEMORY)
 
 
+def test_without_memory_for_the_hook_of_threads_the_process_ends():
+    done = ended(f'threading.ExceptHookArgs = lambda _: fail(); {IN_THREAD}', 'MemoryError')
+    assert (done.returncode, done.stdout) == (1, '')
+    assert done.stderr.endswith(NO_MEMORY)
+
+
 def test_a_thread_that_fails_ends_the_process_with_a_traceback():
     done = ended(IN_THREAD, r'ValueError("\x1b[2J\n[FATAL] why")')
     assert done.returncode == 1
