@@ -87,3 +87,14 @@ def test_placement_frame_of_a_static_model():
         '<model name="m" placement_frame="f"><static>1</static><pose>1 0 0 0 0 0</pose>'
         + posed('frame', 'f', '0 1 0 0 0 0') + '</model>'))
     assert_at(scene, 'm', (1, -1, 0))
+
+
+def test_placement_frame_in_a_model_with_a_placement_frame():
+    inner = ('<model name="i" placement_frame="f"><pose>0 1 0 0 0 1</pose><link name="l"/>'
+             + posed('frame', 'g', '1 0 0 0 0 0.5') + posed('frame', 'f', '0 2 0 0 0 0', 'g')
+             + '</model>')
+    scene = load_text(model_file(
+        '<pose>3 4 0 0 0 2</pose><link name="l"/>' + inner, attributes='placement_frame="i::f"'))
+    assert_at(scene, 'm::i::f', (3, 4, 0))
+    assert scene.pose('m::i::f', 'm')[:3] == pytest.approx((0.0, 1.0, 0.0), abs=1e-12)
+    assert scene.pose('m::i::f', 'm::i::g')[:3] == pytest.approx((0.0, 2.0, 0.0))

@@ -40,6 +40,7 @@ def test_odometry_of_a_spawned_model_counts_from_the_root():
 
 @pytest.mark.parametrize(('content', 'frame_id'), [
     (plugin('DiffDrive', '<frame_id>a::odom</frame_id>'), 'a/odom'),
+    (plugin('DiffDrive', '<frame_id>first</frame_id><frame_id>second</frame_id>'), 'first'),
     (plugin('OdometryPublisher', '<odom_frame>map</odom_frame>'), 'map'),
     (plugin('OdometryPublisher', '<frame_id>map</frame_id>'), 'cart/odom'),
     (plugin('AckermannSteering', '<steering_only>true</steering_only>'), None),
