@@ -4,7 +4,7 @@
 SHELL := bash
 .DEFAULT_GOAL := help
 .PHONY: help setup demo test test_core test_long drake run lint bench differential fuzz growth soak licenses audit docs pictures \
-  coverage wheel_check release_check release clean
+  coverage mutants wheel_check release_check release clean
 
 # The distribution of ROS 2, versions of other packages, a folder with another rclpy, and another
 # middleware and its prefix, also for the scripts in underlay.
@@ -40,6 +40,7 @@ help:
 	@echo 'make drake          Drake, for a test with a real simulator, which is skipped without it'
 	@echo 'make run FILE=...   the node on an SDFormat file; ARGS="-p name:=value" sets parameters'
 	@echo 'make coverage       lines and branches that all tests run, with those of processes'
+	@echo 'make mutants        small faults in MODULE=tf/parents that no test of its test module finds'
 	@echo 'make lint           ruff, mypy, import-linter and codespell'
 	@echo 'make bench          benchmarks; ARGS="..." hands arguments to them'
 	@echo 'make differential   random scenes against libsdformat; ARGS="--scenes 100" for fewer'
@@ -101,6 +102,17 @@ coverage: setup
 	  && rm -rf .underlay/coverage && mkdir -p .underlay/coverage \
 	  && { python -m coverage run -m pytest --numprocesses auto --dist loadfile --no-loadscope-reorder $(ARGS); \
 	    python -m coverage combine --quiet && python -m coverage report --skip-covered; }
+
+mutants: setup
+	@[[ -f sdf_pose_bridge/$(MODULE).py ]] || { echo 'Say which module, for example: MODULE=tf/parents' >&2; exit 1; }
+	@. underlay/setup.bash && python -m pip install --quiet 'mutmut==3.8.1' \
+	  && rm -rf .underlay/mutants && mkdir .underlay/mutants \
+	  && git ls-files | tar -cT - | tar -xC .underlay/mutants && cd .underlay/mutants \
+	  && printf '%s\n' '[tool.mutmut]' "source_paths = ['sdf_pose_bridge']" "also_copy = ['test', 'examples', 'config', 'docs']" \
+	    "only_mutate = ['sdf_pose_bridge/$(MODULE).py']" \
+	    "pytest_add_cli_args_test_selection = ['test/$(dir $(MODULE))test_$(notdir $(MODULE)).py']" \
+	    >> pyproject.toml \
+	  && python -m mutmut run --max-children $$(nproc) && exec python -m mutmut results
 
 lint: setup
 	@. underlay/setup.bash && ruff check && mypy && lint-imports --no-logo --no-cache && exec codespell
