@@ -62,6 +62,8 @@ class Simulator(StateSource):
     :param wake: called when there is an answer.
     """
 
+    is_of_joints = False
+
     def __init__(self, node: Node, name: str, wake: Callable[[], None]) -> None:
         super().__init__(node, node.resolve_service_name(name))
         self.given_name = name

@@ -81,7 +81,7 @@ class StateSource(RareWarnings):
 
     subscription: Subscription | None = None
     """The subscription for whose messages to wait."""
-    is_of_joints = False
+    is_of_joints: bool
     """Whether it has positions of joints, and not poses of models."""
 
     def __init__(self, node: Node, name: str, model: str = '') -> None:
