@@ -35,7 +35,7 @@ in_shell := . underlay/setup.bash && exec
 help:
 	@echo 'make demo           the node on an example, and what a listener receives from it'
 	@echo 'make test           all tests; ARGS="-k name" hands arguments to pytest'
-	@echo 'make test_core      the tests that need no ROS, in half a minute'
+	@echo 'make test_core      the tests that need no ROS, in a minute or two'
 	@echo 'make test_long      all tests, some with many more calls, frames, rotations or random examples'
 	@echo 'make drake          Drake, for a test with a real simulator, which is skipped without it'
 	@echo 'make run FILE=...   the node on an SDFormat file; ARGS="-p name:=value" sets parameters'
