@@ -10,19 +10,17 @@ hostile its input, leaves anything behind. Linux only.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 import contextlib
 import ctypes
-import errno
 import gc
 import math
 import os
 import pickle
 import resource
-import select
+import selectors
 import signal
 import socket
-import struct
 import time
 import traceback
 from typing import BinaryIO, Generic, NoReturn, TypeVar
@@ -32,16 +30,9 @@ from sdf_pose_bridge.process_limits import Allowance, limited, LimitExceededErro
 WAITING_S = 50.0
 """Elapsed time in s of a call beyond its processor time, for disks and other processes."""
 
+_CHECK_PERIOD_S = 0.5
+_LONGEST_REPORT = 10_000
 _PR_SET_PDEATHSIG = 1
-
-_STATUS = struct.Struct('=cid')
-"""A report about a call: one of the events below, its number, and processor time in s."""
-_BEGUN = b'b'
-"""The number is the id of the process."""
-_ENDED = b'e'
-"""The number is the exit code, or the signal below zero."""
-_NOT_STARTED = b'n'
-"""The number is the error number."""
 
 _NO_MEMORY = 'there is not enough memory to read the file'
 
@@ -51,7 +42,7 @@ _Result = TypeVar('_Result')
 class ProcessEndedError(Exception):
     """The process did not answer, or could not be started, or there is no memory."""
 
-    def __init__(self, message: str, *, is_temporary: bool) -> None:
+    def __init__(self, message: str, *, is_temporary: bool = False) -> None:
         super().__init__(message)
         self.is_temporary = is_temporary
         """Whether the same call may succeed later, because it did not end the process itself."""
@@ -93,11 +84,12 @@ class LimitedProcess:
         with self.start(allowance, function, *arguments) as call:
             return call.result()
 
+    @contextlib.contextmanager
     def start(
         self, allowance: Allowance, function: Callable[..., _Result], *arguments: object,
-    ) -> Call[_Result]:
+    ) -> Iterator[Call[_Result]]:
         """
-        Call a function in a process of its own; ``with`` ends it at the end of the block.
+        Call a function in a process of its own, which ends with the block.
 
         :param allowance: the limits of the process.
         :param function: a function of a module; its arguments and result can be pickled.
@@ -107,20 +99,21 @@ class LimitedProcess:
             try:
                 # Call and answer are in memory, so no process waits for another one to read.
                 file = stack.enter_context(open(os.memfd_create('call'), 'r+b'))  # noqa: PTH123
-                status, other_end = map(stack.enter_context, socket.socketpair())
+                status, other_end = map(
+                    stack.enter_context, socket.socketpair(type=socket.SOCK_SEQPACKET))
                 pickle.dump((allowance, function, arguments), file, 5)
                 file.flush()
-                if self._pid:
-                    socket.send_fds(self._calls, [b'.'], [file.fileno(), other_end.fileno()])
+                socket.send_fds(self._calls, [b'.'], [file.fileno(), other_end.fileno()])
             except BrokenPipeError:
                 pass  # the waiting process has ended, as its missing status shows
             except OSError as error:
-                msg = f'the process that reads files cannot be started: {error}'
-                raise ProcessEndedError(msg, is_temporary=True) from error
+                raise _not_started(error) from error
             except MemoryError:
                 raise ProcessEndedError(_NO_MEMORY, is_temporary=True) from None
             other_end.close()
-            return Call(self, allowance, file, status, stack.pop_all())
+            call = Call[_Result](allowance, file, status)
+            stack.callback(call.end)
+            yield call
 
     def close(self) -> None:
         """End the processes; calls that are running, and further ones, fail."""
@@ -136,33 +129,26 @@ class Call(Generic[_Result]):
     A call of a function in a process of its own, which has been started.
 
     :param file: gets the answer.
-    :param status: gets reports about the process.
-    :param opened: closes both.
+    :param status: gets the id of the process; at its end None, with the error that has ended it.
     """
 
-    def __init__(
-        self, process: LimitedProcess, allowance: Allowance, file: BinaryIO,
-        status: socket.socket, opened: contextlib.ExitStack,
-    ) -> None:
-        self._process = process
+    def __init__(self, allowance: Allowance, file: BinaryIO, status: socket.socket) -> None:
         self._allowance = allowance
         self._file = file
         self._status = status
-        self._opened = opened
         self._begin = time.monotonic()
-        self._pid = 0
-        self._end: tuple[bytes, int, float] | None = None
+        self._pid: int | None = 0
+        """The id of the process; 0 before it is known, and None after its end."""
+        self._error: Exception | None = None
+        """The error that has ended it."""
 
-    def __enter__(self) -> Call[_Result]:
-        return self
-
-    def __exit__(self, *_exception: object) -> None:
+    def end(self) -> None:
+        """End the process, if it is still running."""
         with contextlib.suppress(ProcessEndedError):
             self.has_ended(0.0)  # the process may have begun since then
-        if self._pid and self._end is None:
+        if self._pid:
             with contextlib.suppress(ProcessLookupError):
                 os.kill(self._pid, signal.SIGKILL)
-        self._opened.close()
 
     def has_ended(self, timeout_s: float) -> bool:
         """
@@ -174,39 +160,39 @@ class Call(Generic[_Result]):
             time, or if the waiting process has ended.
         """
         ends_at = time.monotonic() + timeout_s
-        while self._end is None:
-            longest_s = self._allowance.processor_s + WAITING_S
-            with contextlib.suppress(OSError):  # the process has ended
-                if self._pid:
-                    # It has raised its own limit if it has read much.
-                    soft, _ = resource.prlimit(self._pid, resource.RLIMIT_CPU)
-                    longest_s = max(longest_s, soft + WAITING_S)
-            last = self._begin + longest_s
-            self._status.settimeout(max(min(ends_at, last) - time.monotonic(), 1e-6))
+        while self._pid is not None:
+            left_s = ends_at - time.monotonic()
+            self._status.settimeout(max(min(left_s, _CHECK_PERIOD_S), 1e-6))
             try:
-                message = self._status.recv(_STATUS.size)
+                report = self._status.recv(_LONGEST_REPORT)
             except TimeoutError:
-                now = time.monotonic()
-                if now >= last:
-                    # The kernel would have ended it if it had used all of its processor time.
-                    msg = (f'the process that reads files has not answered in {longest_s:.0f} s, '
-                           f'of which it used {_processor_s(self._pid):.1f} s of the processor: '
-                           'it was stopped, or waits for a disk or for other processes')
-                    raise ProcessEndedError(msg, is_temporary=True) from None
-                if now >= ends_at:
+                self._check_time()
+                if left_s <= _CHECK_PERIOD_S:
                     return False
                 continue
-            if not message:
-                self._process.close()
+            if not report:
                 msg = ('the process that starts the reading of files has ended; start this '
                        'program again')
-                raise ProcessEndedError(msg, is_temporary=False)
-            report = _STATUS.unpack(message)
-            if report[0] == _BEGUN:
-                self._pid = report[1]
-            else:
-                self._end = report
+                raise ProcessEndedError(msg)
+            self._pid, self._error = pickle.loads(report)
         return True
+
+    def _check_time(self) -> None:
+        """Raise an error if the process should have answered or ended before."""
+        longest_s, used_s = self._allowance.processor_s + WAITING_S, 0.0
+        with contextlib.suppress(OSError):  # the process has ended
+            if self._pid:
+                # It has raised its own limit if it has read much.
+                soft, _ = resource.prlimit(self._pid, resource.RLIMIT_CPU)
+                longest_s = max(longest_s, soft + WAITING_S)
+                # The clock of a process, as clock_getcpuclockid of the C library.
+                used_s = time.clock_gettime(~self._pid << 3 | 2)
+        if time.monotonic() >= self._begin + longest_s:
+            # The kernel would have ended it if it had used all of its processor time.
+            msg = (f'the process that reads files has not answered in {longest_s:.0f} s, '
+                   f'of which it used {used_s:.1f} s of the processor: '
+                   'it was stopped, or waits for a disk or for other processes')
+            raise ProcessEndedError(msg, is_temporary=True)
 
     def result(self) -> _Result:
         """
@@ -219,19 +205,8 @@ class Call(Generic[_Result]):
         :raises Exception: any exception of the function.
         """
         self.has_ended(math.inf)
-        assert self._end is not None
-        event, number, processor_s = self._end
-        if event == _NOT_STARTED:
-            msg = f'the process that reads files cannot be started: {os.strerror(number)}'
-            raise ProcessEndedError(msg, is_temporary=True)
-        if number == -signal.SIGXCPU:
-            msg = f'more than {processor_s:.0f} s of processor time'
-            raise LimitExceededError(msg)
-        if number:
-            how = f'by signal {-number}' if number < 0 else f'with exit code {number}'
-            # The kernel uses this signal when memory runs out.
-            msg = f'the process that reads files has ended {how}'
-            raise ProcessEndedError(msg, is_temporary=number == -signal.SIGKILL)
+        if self._error is not None:
+            raise self._error
         self._file.seek(0)
         try:
             # Other threads can run after each piece.
@@ -257,52 +232,61 @@ def _serve(calls: socket.socket, prepare: Callable[[], None]) -> NoReturn:
         nowhere = os.open(os.devnull, os.O_WRONLY)
         for descriptor in (1, 2):
             os.dup2(nowhere, descriptor)
-        poll = select.poll()
-        poll.register(calls, select.POLLIN)
-        # The process and the caller of each call, by a descriptor of the process.
-        running: dict[int, tuple[int, socket.socket]] = {}
+        selector = selectors.DefaultSelector()
+        selector.register(calls, selectors.EVENT_READ)
         while True:
-            for descriptor, _ in poll.poll():
-                if descriptor in running:
-                    poll.unregister(descriptor)
-                    os.close(descriptor)
-                    pid, status = running.pop(descriptor)
-                    _, code, usage = os.wait4(pid, 0)
-                    _report(status, _ENDED, os.waitstatus_to_exitcode(code),
-                            usage.ru_utime + usage.ru_stime)
+            for key, _ in selector.select():
+                if key.fileobj is calls:
+                    _begin_call(calls, selector)
                     continue
-                _, descriptors, _, _ = socket.recv_fds(calls, 1, 2)
-                if not descriptors:
-                    os._exit(1)
-                status = socket.socket(fileno=descriptors[1])
-                with open(descriptors[0], 'r+b') as file:  # noqa: PTH123
-                    pid = _process_of_call(file, status)
-                if pid:
-                    descriptor = os.pidfd_open(pid)
-                    running[descriptor] = pid, status
-                    poll.register(descriptor, select.POLLIN)
+                selector.unregister(key.fileobj)
+                os.close(key.fd)
+                pid, status = key.data
+                _, code, usage = os.wait4(pid, 0)
+                _report_end(status, _error_from_end(
+                    os.waitstatus_to_exitcode(code), usage.ru_utime + usage.ru_stime))
     finally:
         os._exit(1)
 
 
-def _process_of_call(file: BinaryIO, status: socket.socket) -> int:
-    """Fork for a call, and return the id of the process; 0 after a report that there is none."""
-    try:
-        pid = os.fork()
-    except OSError as error:
-        _report(status, _NOT_STARTED, error.errno or errno.EAGAIN)
-        return 0
-    if pid == 0:
-        _answer_call(file, status)
-    return pid
+def _begin_call(calls: socket.socket, selector: selectors.BaseSelector) -> None:
+    """Fork for the next call, and watch the process."""
+    # Nothing can be unpacked if the other process has ended, and then this one ends, too.
+    _, (call, caller), _, _ = socket.recv_fds(calls, 1, 2)
+    status = socket.socket(fileno=caller)
+    with open(call, 'r+b') as file:  # noqa: PTH123
+        try:
+            pid = os.fork()
+        except OSError as error:
+            _report_end(status, _not_started(error))
+            return
+        if pid == 0:
+            _answer_call(file, status)
+    selector.register(os.pidfd_open(pid), selectors.EVENT_READ, (pid, status))
 
 
-def _report(
-    status: socket.socket, event: bytes, number: int, processor_s: float = 0.0,
-) -> None:
-    """Send the last report about a call."""
+def _report_end(status: socket.socket, error: Exception | None) -> None:
+    """Report that a process has ended, and the error that is the reason."""
     with status, contextlib.suppress(BrokenPipeError):  # the caller waits no longer
-        status.sendall(_STATUS.pack(event, number, processor_s))
+        status.send(pickle.dumps((None, error)))
+
+
+def _not_started(error: OSError) -> ProcessEndedError:
+    msg = f'the process that reads files cannot be started: {error}'
+    return ProcessEndedError(msg, is_temporary=True)
+
+
+def _error_from_end(code: int, processor_s: float) -> Exception | None:
+    """Return the error for an exit code, or for a signal below zero; None for an answer."""
+    if code == 0:
+        return None
+    if code == -signal.SIGXCPU:
+        msg = f'more than {processor_s:.0f} s of processor time'
+        return LimitExceededError(msg)
+    how = f'by signal {-code}' if code < 0 else f'with exit code {code}'
+    # The kernel uses this signal when memory runs out.
+    msg = f'the process that reads files has ended {how}'
+    return ProcessEndedError(msg, is_temporary=code == -signal.SIGKILL)
 
 
 def _answer_call(file: BinaryIO, status: socket.socket) -> NoReturn:
@@ -310,7 +294,8 @@ def _answer_call(file: BinaryIO, status: socket.socket) -> NoReturn:
     code = 1
     try:
         _end_with_parent()
-        status.sendall(_STATUS.pack(_BEGUN, os.getpid(), 0.0))
+        # This fails if the caller, which does not know this process, waits no longer.
+        status.send(pickle.dumps((os.getpid(), None)))
         with contextlib.suppress(OSError), open('/proc/self/oom_score_adj', 'w') as score:  # noqa: PTH123
             # When memory runs out, this process is ended, not the one that serves others.
             score.write('1000')
@@ -321,8 +306,8 @@ def _answer_call(file: BinaryIO, status: socket.socket) -> NoReturn:
         file.write(answer)
         file.flush()
         # The end of the process takes a while, and the caller need not wait for it.
+        status.send(pickle.dumps((None, None)))
         code = 0
-        status.sendall(_STATUS.pack(_ENDED, code, 0.0))
     finally:
         os._exit(code)
 
@@ -340,15 +325,6 @@ def _answer(
             return pickle.dumps((None, error, text), 5)
         except Exception:  # noqa: BLE001 - errors of libraries may hold anything
             return pickle.dumps((None, RuntimeError(repr(error)), text), 5)
-
-
-def _processor_s(pid: int) -> float:
-    """Return the processor time that a process has used in s; 0 if there is none."""
-    clock = ~pid << 3 | 2  # as clock_getcpuclockid of the C library
-    try:
-        return time.clock_gettime(clock) if pid else 0.0
-    except OSError:
-        return 0.0
 
 
 def _end_with_parent() -> None:

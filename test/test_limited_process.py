@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Calls in real processes: their limits, and what happens when one is killed or stopped."""
 
+import contextlib
 import faulthandler
 import os
 import resource
@@ -44,14 +45,15 @@ def make_process(pipe):
 
 @pytest.fixture(name='busy')
 def start_busy_call(process, pipe):
-    """Starts a call that says when it runs; ``busy(allowance, code)`` returns its process too."""
+    """Starts a call that says when it runs; ``with busy(allowance, code) as (call, pid)``."""
     reader, writer = pipe
 
+    @contextlib.contextmanager
     def start(allowance, code):
         code = f'import os; os.write({writer}, b"%d" % os.getpid())\n{code}'
-        call = process.start(allowance, exec, code, {})
-        assert select.select([reader], [], [], DEADLINE_S)[0], 'the call does not begin'
-        return call, int(os.read(reader, 20))
+        with process.start(allowance, exec, code, {}) as call:
+            assert select.select([reader], [], [], DEADLINE_S)[0], 'the call does not begin'
+            yield call, int(os.read(reader, 20))
     return start
 
 
@@ -125,8 +127,7 @@ def test_a_call_keeps_no_other_one_waiting(process):
 
 
 def test_a_call_ends_with_its_block(busy):
-    call, pid = busy(AMPLE, SPIN)
-    with call:
+    with busy(AMPLE, SPIN) as (_, pid):
         pass
     assert has_ended(pid)
 
@@ -179,12 +180,12 @@ def test_other_threads_run_while_much_is_answered(process):
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_to_the_group_is_not_for_it(process, busy, number):
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, [])
-    call, pid = busy(AMPLE, 'import signal; signal.sigwait([signal.SIGUSR1])')
-    os.kill(pid, number)
-    os.kill(process._pid, number)
-    os.kill(pid, signal.SIGUSR1)
-    with pytest.raises(ProcessEndedError, match='by signal 10'), call:
-        call.result()
+    with busy(AMPLE, 'import signal; signal.sigwait([signal.SIGUSR1])') as (call, pid):
+        os.kill(pid, number)
+        os.kill(process._pid, number)
+        os.kill(pid, signal.SIGUSR1)
+        with pytest.raises(ProcessEndedError, match='by signal 10'):
+            call.result()
     assert process.call(AMPLE, pow, 2, 2) == 4
     assert signal.pthread_sigmask(signal.SIG_BLOCK, []) == mask
 
@@ -221,8 +222,8 @@ def test_a_process_that_is_stopped_while_it_is_busy_is_killed(process, busy, mon
     monkeypatch.setattr(limited_process, 'WAITING_S', 0.0)
     # The time is over before the caller knows of the process.
     at_once = AMPLE._replace(processor_s=0.0)
-    call, pid = busy(at_once, 'import signal; signal.raise_signal(signal.SIGSTOP)')
-    with pytest.raises(ProcessEndedError, match=NO_ANSWER), call:
+    with (pytest.raises(ProcessEndedError, match=NO_ANSWER),
+          busy(at_once, 'import signal; signal.raise_signal(signal.SIGSTOP)') as (call, pid)):
         call.result()
     assert has_ended(pid)
     assert process.call(AMPLE, pow, 2, 2) == 4
@@ -253,15 +254,16 @@ def test_a_call_is_answered_although_the_waiting_process_is_stopped(process, pip
     assert os.read(reader, 1) == b'.'
 
 
-@pytest.mark.parametrize('is_busy', [False, True])
-def test_a_waiting_process_that_is_killed_is_an_error_that_stays(process, busy, is_busy):
-    if is_busy:
-        call, pid = busy(AMPLE, SPIN)
-    os.kill(process._pid, signal.SIGKILL)
-    if is_busy:
-        with pytest.raises(ProcessEndedError, match=STARTER_ENDED), call:
+def test_a_waiting_process_that_is_killed_ends_its_call(process, busy):
+    with busy(AMPLE, SPIN) as (call, pid):
+        os.kill(process._pid, signal.SIGKILL)
+        with pytest.raises(ProcessEndedError, match=STARTER_ENDED):
             call.result()
-        assert has_ended(pid)
+    assert has_ended(pid)
+
+
+def test_a_waiting_process_that_is_killed_is_an_error_that_stays(process):
+    os.kill(process._pid, signal.SIGKILL)
     for _ in range(2):
         with pytest.raises(ProcessEndedError, match=STARTER_ENDED) as caught:
             process.call(AMPLE, pow, 2, 2)
@@ -281,11 +283,11 @@ def test_without_descriptors_a_call_is_an_error_that_passes(process):
 
 
 def test_a_closed_process_ends_its_call(process, busy):
-    call, pid = busy(AMPLE, SPIN)
-    waiting = process._pid
-    process.close()
-    with pytest.raises(ProcessEndedError), call:
-        call.result()
+    with busy(AMPLE, SPIN) as (call, pid):
+        waiting = process._pid
+        process.close()
+        with pytest.raises(ProcessEndedError):
+            call.result()
     assert has_ended(pid)
     assert has_ended(waiting)
 
