@@ -103,6 +103,8 @@ class SdfError(Exception):
     """As :attr:`Place.line`."""
     element: str
     """As :attr:`Place.element`."""
+    warnings: tuple[SdfWarning, ...] = ()
+    """All warnings of the load that this error ended, in file order."""
 
     def __init_subclass__(cls, code: str = '') -> None:
         if code:
@@ -115,17 +117,11 @@ class SdfError(Exception):
         self.place = place
         self.file, self.line, self.element = place
         self._errors: tuple[SdfError, ...] = ()
-        self._warnings: tuple[SdfWarning, ...] = ()
 
     @property
     def errors(self) -> tuple[SdfError, ...]:
         """All errors of the load that this error ended, in file order."""
         return self._errors or (self,)
-
-    @property
-    def warnings(self) -> tuple[SdfWarning, ...]:
-        """All warnings of the load that this error ended, in file order."""
-        return self._warnings
 
     def __str__(self) -> str:
         return f'{self.place}: {self.code}: {self.message}'
@@ -144,7 +140,7 @@ class LoadError(SdfError):
         self.args = (errors, warnings)
         self.code = errors[0].code
         self._errors = tuple(errors)
-        self._warnings = tuple(warnings)
+        self.warnings = tuple(warnings)
 
     def __str__(self) -> str:
         return '\n'.join(str(error) for error in self._errors)

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from itertools import count
 from typing import TypeVar
 
 from sdf_pose_bridge.errors import (
@@ -43,19 +44,18 @@ class Problems:
 
     :param paths: the files that are read, in the order of reading; it may grow.
     :param includes: the place of the include that first led to each included file; it may grow.
-    :param parent: the problems of the whole load, if these are the problems of a part.
+    :param hints: counts messages that suggest a name; a part of a load has that of the whole.
     """
 
     def __init__(
         self, paths: Sequence[str], includes: Mapping[str, Place] | None = None,
-        parent: Problems | None = None,
+        hints: Iterator[int] | None = None,
     ) -> None:
         self._paths = paths
         self._includes = {} if includes is None else includes
-        self._parent = parent
         self._errors = _First[SdfError]()
         self._warnings = _First[SdfWarning]()
-        self._hints = 0
+        self.hints = count(1) if hints is None else hints
         self.error_count = 0
         """Number of errors that were added, with those that are not kept."""
         self.are_for_gazebo = False
@@ -84,11 +84,10 @@ class Problems:
                     problem.message, problem.place, problem.code,
                     is_for_gazebo=problem.is_for_gazebo)
 
-    def extend_parent(self) -> None:
-        """Add these errors and warnings to the problems of the whole load."""
-        assert self._parent is not None
-        self._parent.extend([*self._errors.values(), *self._warnings.values()])
-        self._parent.count_more(self._errors.more, self._warnings.more)
+    def add_part(self, part: Problems) -> None:
+        """Add the errors and warnings of a part of the load."""
+        self.extend([*part._errors.values(), *part._warnings.values()])
+        self.count_more(part._errors.more, part._warnings.more)
 
     def count_more(self, errors: int, warnings: int) -> None:
         """Count problems without keeping them."""
@@ -106,10 +105,7 @@ class Problems:
 
     def allows_hint(self) -> bool:
         """Return whether a message may end in a hint, and count it."""
-        if self._parent is not None:
-            return self._parent.allows_hint()
-        self._hints += 1
-        return self._hints <= MOST_HINTS
+        return next(self.hints) <= MOST_HINTS
 
     @property
     def errors(self) -> tuple[SdfError, ...]:
@@ -164,23 +160,20 @@ class Problems:
         return f' ({", ".join(steps)})'
 
 
-def by_message(problems: Iterable[_Problem]) -> list[tuple[_Problem, str]]:
+def by_message(problems: Iterable[_Problem]) -> Iterator[tuple[_Problem, str]]:
     """
     Join the problems of one file that have the same message.
 
-    :return: the first problem of each message, and a text with the lines of the others; '' if
-        there are none.
+    :return: an iterator over the first problem of each message, with a text about the lines of the
+        others; '' if there are none.
     """
     groups: dict[Hashable, list[_Problem]] = {}
     for problem in problems:
         key = (problem.place.file, problem.code, problem.message)
         groups.setdefault(key, []).append(problem)
-    result = []
     for first, *others in groups.values():
         lines = listed([str(each.place.line) for each in others])
-        text = f' (also line{"s" if others[1:] else ""} {lines})' if others else ''
-        result.append((first, text))
-    return result
+        yield first, f' (also line{"s" if others[1:] else ""} {lines})' if others else ''
 
 
 @contextmanager

@@ -76,17 +76,17 @@ def test_many_errors_end_with_the_number_of_those_not_kept():
 def test_problems_of_a_part_are_counted_in_the_whole():
     problems = Problems(['a.sdf'])
     problems.error(ParsingError('first', PLACE))
-    part = Problems(['a.sdf'], parent=problems)
+    part = Problems(['a.sdf'])
     for line in range(MOST_PROBLEMS + 7):
         part.error(ParsingError('x', Place('a.sdf', line)))
-    part.extend_parent()
+    problems.add_part(part)
     assert len(problems.errors) == MOST_PROBLEMS + 1
     assert problems.errors[-1].message == 'and 8 more errors'
 
 
 def test_number_of_hints_is_limited():
     problems = Problems(['a.sdf'])
-    part = Problems(['a.sdf'], parent=problems)
+    part = Problems(['a.sdf'], hints=problems.hints)
     assert sum(part.allows_hint() for _ in range(MOST_HINTS + 5)) == MOST_HINTS
     assert not problems.allows_hint()
 

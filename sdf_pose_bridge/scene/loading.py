@@ -152,7 +152,7 @@ def _model_by_itself(root: XmlElement, sources: Sources) -> ModelByItself | None
     elements = elements_from_tree(root, part)
     graph = frame_graph_from_elements(elements, part.problems)
     if part.problems.errors:
-        part.problems.extend_parent()
+        sources.problems.add_part(part.problems)
         return None
     model = 1  # element 0 is the implicit root
     place = elements.place_of_pose(model)

@@ -102,7 +102,7 @@ class Sources:
     def with_own_problems(self) -> Sources:
         """Return the same sources with separate problems, which are added to the load later."""
         part = copy.copy(self)
-        part.problems = Problems(self.paths, parent=self.problems)
+        part.problems = Problems(self.paths, hints=self.problems.hints)
         return part
 
     def error(
