@@ -103,7 +103,8 @@ class LimitedProcess:
                     stack.enter_context, socket.socketpair(type=socket.SOCK_SEQPACKET))
                 pickle.dump((allowance, function, arguments), file, 5)
                 file.flush()
-                socket.send_fds(self._calls, [b'.'], [file.fileno(), other_end.fileno()])
+                if self._pid:
+                    socket.send_fds(self._calls, [b'.'], [file.fileno(), other_end.fileno()])
             except BrokenPipeError:
                 pass  # the waiting process has ended, as its missing status shows
             except OSError as error:
@@ -258,7 +259,7 @@ def _begin_call(calls: socket.socket, selector: selectors.BaseSelector) -> None:
         try:
             pid = os.fork()
         except OSError as error:
-            _report_end(status, _not_started(error))
+            _report_end(status, _not_started(error.strerror))
             return
         if pid == 0:
             _answer_call(file, status)
@@ -271,8 +272,8 @@ def _report_end(status: socket.socket, error: Exception | None) -> None:
         status.send(pickle.dumps((None, error)))
 
 
-def _not_started(error: OSError) -> ProcessEndedError:
-    msg = f'the process that reads files cannot be started: {error}'
+def _not_started(reason: object) -> ProcessEndedError:
+    msg = f'the process that reads files cannot be started: {reason}'
     return ProcessEndedError(msg, is_temporary=True)
 
 

@@ -282,6 +282,17 @@ def test_without_descriptors_a_call_is_an_error_that_passes(process):
     assert process.call(AMPLE, pow, 2, 2) == 4
 
 
+def test_if_no_process_can_be_forked_a_call_is_an_error_that_passes():
+    def fail():
+        raise BlockingIOError(11, 'no more processes')
+
+    with contextlib.closing(LimitedProcess(lambda: setattr(os, 'fork', fail))) as process:
+        for _ in range(2):
+            with pytest.raises(ProcessEndedError, match='cannot be started: no more') as caught:
+                process.call(AMPLE, pow, 2, 2)
+            assert caught.value.is_temporary
+
+
 def test_a_closed_process_ends_its_call(process, busy):
     with busy(AMPLE, SPIN) as (call, pid):
         waiting = process._pid
@@ -290,6 +301,8 @@ def test_a_closed_process_ends_its_call(process, busy):
             call.result()
     assert has_ended(pid)
     assert has_ended(waiting)
+    with pytest.raises(ProcessEndedError, match=STARTER_ENDED):
+        process.call(AMPLE, pow, 2, 2)
 
 
 PARENT = """
