@@ -11,6 +11,7 @@ most of it is made by xacro: an error says which ``<origin>`` the file needs.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 import os
 from pathlib import Path
 from typing import NamedTuple, TypeAlias
@@ -83,18 +84,17 @@ def pose_change(
     :raises PoseNotSetError: if no change of a single ``<pose>`` gives this pose.
     :raises SdfError: if a file can no longer be read.
     """
+    change = partial(
+        _change_of_own_pose, scene, measure=measure, load=load, all_instances=all_instances)
     try:
-        return _change_of_own_pose(
-            scene, element, asked, measure, load, all_instances=all_instances)
+        return change(element, asked)
     except PoseNotSetError:
         model = next(
             (model for model, frame in scene.placements.items() if frame == element), None)
         if model is None:
             raise
     in_model = relative_pose(measure(scene, model), measure(scene, element))
-    return _change_of_own_pose(
-        scene, model, pose_product(asked, pose_inverse(in_model)), measure, load,
-        all_instances=all_instances)
+    return change(model, pose_product(asked, pose_inverse(in_model)))
 
 
 def _change_of_own_pose(

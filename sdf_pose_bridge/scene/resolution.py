@@ -123,12 +123,11 @@ def _joint(
         if written is None:
             axes.append(_NO_AXIS)
             continue
-        xyz, lower, upper, _, *dynamics = written.axis
         leader = new_index_of[leader]
-        mimic = None if written.mimic is None or leader == NO_ELEMENT else Mimic(
-            leader, *written.mimic[1:])
-        axes.append(JointAxis(
-            _axis_in_joint(xyz, expressed_in, ends.joint, poses), lower, upper, mimic, *dynamics))
+        axes.append(written.axis._replace(
+            xyz=_axis_in_joint(written.axis.xyz, expressed_in, ends.joint, poses),
+            mimic=None if written.mimic is None or leader == NO_ELEMENT else Mimic(
+                leader, *written.mimic[1:])))
     return Joint(
         new_index_of[ends.joint], details.type, new_index_of[ends.parent],
         new_index_of[ends.child], (axes[0], axes[1]), details.screw_pitch_m)

@@ -154,7 +154,7 @@ def check_frames_of_sensors(
 
 def is_same_place(pose: Pose) -> bool:
     """Return whether a pose is the identity, except for rounding errors."""
-    return math.dist(pose[:6], Pose()[:6]) < _SAME_PLACE
+    return math.hypot(*pose[:6]) < _SAME_PLACE
 
 
 def frames_at_joints(

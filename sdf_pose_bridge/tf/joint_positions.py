@@ -38,8 +38,6 @@ that read URDF name it too; its position follows from the first one."""
 _MOST_STEPS = 10
 """Largest number of innermost steps of a name that can replace it."""
 
-_MOST_NAMES_SHOWN = 6
-
 NEVER = -1
 """A time before all others, in nanoseconds."""
 
@@ -115,15 +113,14 @@ class JointPositions:
             if scene.kinds[outer := scene.parents.item(model)] == Kind.MODEL}
         """For each free model in a model the name of that, and its pose there in the file."""
         count = len(self.names)
-        self._is_fixed = np.zeros(count, np.bool_)
+        self._is_assumed = (np.arange(count) < len(motion.elements)) & (
+            unreported is UnreportedJoints.ZERO)
+        """Whether the position of each is known without a message."""
         self.values = motion.initial_coordinates.copy()
         """The coordinates. The array is replaced, never changed in place, so another thread has
         all values of one time."""
         self._motion = motion
         self._stamps_of_values_ns = np.full(count, _UNREPORTED)
-        self.reported_count = 0
-        """Number of degrees of freedom that :attr:`is_reported` has."""
-        self._unreported = unreported
         # Other bodies have no element, and count as parts of the root.
         top_level_elements = [
             *map(scene.top_level_element, motion.elements), *[0] * len(self.others)]
@@ -140,7 +137,7 @@ class JointPositions:
         for dof, each in enumerate(dofs):
             mimic, lower = each.axis.mimic, each.axis.lower
             if lower == each.axis.upper and abs(lower) <= LARGEST_POSITION:
-                self._is_fixed[dof], self.values[dof] = True, lower
+                self._is_assumed[dof], self.values[dof] = True, lower
             if mimic is not None and (mimic.joint, mimic.axis) in leaders:
                 leader = leaders[mimic.joint, mimic.axis]
                 self._followers.setdefault(leader, []).append(Follower(dof, leader, mimic))
@@ -154,15 +151,18 @@ class JointPositions:
     @property
     def is_known(self) -> NDArray[np.bool_]:
         """Whether the position of each is known."""
-        if self._unreported is UnreportedJoints.NONE:
-            return self.is_reported | self._is_fixed
-        return self.is_reported | (np.arange(len(self.names)) < len(self._motion.elements))
+        return self.is_reported | self._is_assumed
 
     @property
     def is_reported(self) -> NDArray[np.bool_]:
         """Whether each has a reported position, or follows from one that has."""
         found: NDArray[np.bool_] = self._stamps_of_values_ns != _UNREPORTED
         return found
+
+    @property
+    def reported_count(self) -> int:
+        """Number of degrees of freedom that :attr:`is_reported` has."""
+        return int(np.count_nonzero(self.is_reported))
 
     @property
     def stamps_ns(self) -> NDArray[np.int64]:
@@ -264,8 +264,6 @@ class JointPositions:
         # In this order, as another thread may look up poses meanwhile.
         self.values = changed
         self._stamps_of_values_ns[[*is_changed]] = stamp_ns
-        if self.reported_count < len(self.names):
-            self._count_reported()
         return invalid
 
     def forget_stamps(self) -> None:
@@ -275,29 +273,29 @@ class JointPositions:
 
     def take_over(self, before: JointPositions) -> None:
         """Continue with the reported coordinates of joints and models of the same names."""
-        is_reported = before.is_reported
-        rows = {key: row for row, key in enumerate(before._keys()) if is_reported[row]}
-        keys = [(dof, key) for dof, key in enumerate(self._keys()) if key in rows]
-        here = np.array([dof for dof, _ in keys], np.intp)
-        there = np.array([rows[key] for _, key in keys], np.intp)
-        self.values = self.values.copy()
-        self.values[self._coordinates(here)] = before.values[before._coordinates(there)]
-        self._stamps_of_values_ns[here] = before._stamps_of_values_ns[there]
-        for new, old in zip(self._models[here], before._models[there], strict=True):
-            self._stamps_of_models_ns[new] = before._stamps_of_models_ns[old]
-        self._count_reported()
+        reported = {
+            before._key(dof): dof for dof in np.flatnonzero(before.is_reported).tolist()}
+        pairs = [
+            (dof, reported[key]) for dof in range(len(self.names))
+            if (key := self._key(dof)) in reported]
+        values = self.values.copy()
+        for dof, old in pairs:
+            values[self._coordinates(dof)] = before.values[before._coordinates(old)]
+        # In this order, as in :meth:`update`.
+        self.values = values
+        for dof, old in pairs:
+            self._stamps_of_values_ns[dof] = before._stamps_of_values_ns[old]
+            self._stamps_of_models_ns[self._models[dof]] = (
+                before._stamps_of_models_ns[before._models[old]])
 
-    def _keys(self) -> list[tuple[str, bool]]:
-        """Return the name of each degree of freedom, and whether it is a free model."""
-        return [(name, self.is_model(dof)) for dof, name in enumerate(self.names)]
+    def _key(self, dof: int) -> tuple[str, bool]:
+        """Return the name of a degree of freedom, and whether it is a free model."""
+        return self.names[dof], self.is_model(dof)
 
-    def _coordinates(self, dofs: NDArray[np.intp]) -> NDArray[np.intp]:
-        """Return the coordinates of joints and then of free models, shape (n,)."""
-        is_joint = dofs < len(self._motion.dofs)
-        return np.append(dofs[is_joint], self._motion.coordinates(dofs[~is_joint]))
-
-    def _count_reported(self) -> None:
-        self.reported_count = int(np.count_nonzero(self.is_reported))
+    def _coordinates(self, dof: int) -> NDArray[np.intp]:
+        """Return the coordinates of a degree of freedom."""
+        dofs = np.array([dof])
+        return self._motion.coordinates(dofs)[0] if self.is_model(dof) else dofs
 
 
 def leading_dofs(scene: Scene) -> list[DegreeOfFreedom]:
@@ -324,7 +322,7 @@ def scene_at_positions(scene: Scene, positions: Mapping[str, float]) -> Scene:
     selection = state.selection(list(positions))
     invalid = state.update(selection, np.array(list(positions.values()), float))
     for name in state.unknown(positions):
-        known = (f'the moving joints are {quoted_names(state.names, _MOST_NAMES_SHOWN)}'
+        known = (f'the moving joints are {quoted_names(state.names)}'
                  if state.names else 'the file has no moving joint')
         msg = f'"{name}" is not the name of one moving joint{state.hint(name)}; {known}'
         raise JointPositionError(msg, Place(scene.path))

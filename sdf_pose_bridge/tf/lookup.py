@@ -11,7 +11,6 @@ from typing import NamedTuple
 import numpy as np
 
 from sdf_pose_bridge.errors import JointPositionError, Place, UnknownFrameError
-from sdf_pose_bridge.geometry.chains import ends_from_pointers, Indices
 from sdf_pose_bridge.geometry.poses import canonical_relative_pose, Pose
 from sdf_pose_bridge.names import NameIndex
 from sdf_pose_bridge.scene.scene import Scene
@@ -81,16 +80,13 @@ class PoseLookup:
         :return: its index, which is that of a free model if the frame moves with one; -1 for none,
             and if the name is unknown or ambiguous.
         """
+        first = NO_DOF
         with contextlib.suppress(UnknownFrameError):
             if self._tree.moving is not None:
-                return int(self._first_dofs[self._found(frame).owner])
-        return NO_DOF
-
-    @cached_property
-    def _first_dofs(self) -> Indices:
-        assert self._tree.moving is not None
-        motion = self._tree.moving.motion
-        first: Indices = np.append(ends_from_pointers(motion.previous), NO_DOF)[motion.last_dofs]
+                motion = self._tree.moving.motion
+                dof = motion.last_dofs.item(self._found(frame).owner)
+                while dof != NO_DOF:
+                    first, dof = dof, motion.previous.item(dof)
         return first
 
     def is_frame_id(self, name: str) -> bool:
