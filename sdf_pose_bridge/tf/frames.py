@@ -59,7 +59,7 @@ class Frames(NamedTuple):
     ids: Sequence[str]
     owners: Indices
     """The element that each frame moves with: its own, or the camera of an optical frame; for a
-    frame at a joint as in ``JointMotion.last_dofs``."""
+    frame at a joint that moves as in ``JointMotion.last_dofs``."""
     parents: Indices
     """Index of the parent of each frame, or :data:`ROOT_IS_PARENT`, or :data:`NO_PARENT`."""
     poses: PoseArray
@@ -159,7 +159,7 @@ def is_same_place(pose: Pose) -> bool:
 
 def frames_at_joints(
     frames: Frames, scene: Scene, motion: JointMotion, tf_parents: TfParents,
-    naming: FrameNaming, root_frame: str,
+    naming: FrameNaming, root_frame: str, *, joints_move: bool,
 ) -> list[Frame]:
     """
     Make a frame for each link that URDF needs and SDFormat has not.
@@ -168,12 +168,12 @@ def frames_at_joints(
     joints to links that are not published, which are not in the URDF.
 
     :param frames: all other frames, which keep their ids.
+    :param joints_move: whether a frame can move in the body behind its joint.
     """
     rows = {owner: row for row, owner in enumerate(frames.owners.tolist())}
     used = {root_frame, *frames.ids}
     found = []
-    for index, (dof, body) in enumerate(
-            zip(motion.dofs, motion.moved_bodies.tolist(), strict=False)):
+    for index, (dof, body) in enumerate(zip(motion.dofs, motion.moved_bodies, strict=True)):
         pose = scene.pose_of(dof.joint.element)
         is_last = motion.last_dofs[body] == index
         if is_last and is_same_place(relative_pose(pose, scene.pose_of(body))):
@@ -186,5 +186,6 @@ def frames_at_joints(
         frame_id = naming.frame_id_from_name(f'{dof.name}{slide}{LINK_SUFFIX}')
         if parent != NO_PARENT and frame_id not in used:
             used.add(frame_id)
-            found.append(Frame(frame_id, len(scene.kinds) + index, parent, pose))
+            owner = len(scene.kinds) + index if joints_move else body
+            found.append(Frame(frame_id, owner, parent, pose))
     return found

@@ -140,6 +140,8 @@ class JointMotion:
         self.dofs = tuple(dofs)
         """The degrees of freedom of joints; those of one joint are adjacent, in order from the
         root. The axis is reversed if the moved body is the parent of the joint."""
+        self.moved_bodies = tuple(bodies)
+        """The body at the end of the joint of each of these."""
         models = list(tf_parents.free_models.values())
         names = FrameNaming(frame_names).frame_ids_from_scene(scene, np.array(models, np.int32))
         self.names = (*(each.name for each in dofs), *names, *others)
@@ -148,10 +150,6 @@ class JointMotion:
         self.elements = (*(each.joint.element for each in dofs), *models)
         """The joint or the model of each, except for other bodies."""
         bodies += tf_parents.free_models
-        no_elements = np.zeros(len(others), np.int32)
-        self.moved_bodies: Indices = np.append(np.array(bodies, np.int32), no_elements)
-        """The body that each degree of freedom moves: the one at the end of the joint, or the
-        canonical link of the model; 0 for another body."""
         indices = np.arange(len(bodies), dtype=np.int32)
         last_of_elements = np.full(len(scene.kinds), NO_DOF, np.int32)
         # The last degree of freedom of a joint replaces the others.
@@ -164,7 +162,7 @@ class JointMotion:
         each degree of freedom itself, for frames between it and the next one."""
         self.previous: Indices = np.append(np.where(
             np.diff(bodies, prepend=-1), last_of_elements[tf_parents.parents[bodies]],
-            indices - 1), no_elements + NO_DOF)
+            indices - 1), np.full(len(others), NO_DOF, np.int32))
         """For each degree of freedom the previous one on the path from the root; -1 for none."""
         poses = np.concatenate([
             scene.poses[list(self.elements)], np.tile(Pose(), (len(others), 1))])

@@ -240,22 +240,16 @@ class JointPositions:
         :param ignore_stamps: whether no position stays.
         :return: the names whose values are not finite or too large; their positions stay.
         """
-        dofs, new, invalid = selection.dofs, values[selection.rows], []
-        coordinates = selection.coordinates
-        newest_ns = max((self._stamps_of_models_ns[each] for each in selection.models), default=0)
-        is_late = stamp_ns < newest_ns and not ignore_stamps
-        # Most often all are valid. Comparisons with NaN are false.
-        if is_late or not np.abs(new).max(initial=0.0) <= LARGEST_POSITION:
-            is_taken = (np.abs(new) <= LARGEST_POSITION).reshape(len(new), -1).all(axis=1)
-            invalid = [self.names[dof] for dof in dofs[~is_taken].tolist()]
-            if not ignore_stamps:
-                is_taken &= self._stamps_of_values_ns[dofs] <= stamp_ns
-            dofs, new, coordinates = dofs[is_taken], new[is_taken], coordinates[is_taken]
+        dofs, new = selection.dofs, values[selection.rows]
+        is_valid = np.abs(new) <= LARGEST_POSITION  # NaN is not
+        if new.ndim > 1:
+            is_valid = is_valid.all(axis=1)
+        is_taken = is_valid & (ignore_stamps | (self._stamps_of_values_ns[dofs] <= stamp_ns))
         for model in selection.models:
             self._stamps_of_models_ns[model] = max(self._stamps_of_models_ns[model], stamp_ns)
         changed = self.values.copy()
-        changed[coordinates] = new
-        is_changed = set(dofs.tolist())
+        changed[selection.coordinates[is_taken]] = new[is_taken]
+        is_changed = set(dofs[is_taken].tolist())
         for dof, leader, mimic in selection.followers:
             value = mimic.multiplier * (changed[leader] - mimic.reference) + mimic.offset
             if leader in is_changed and abs(value) <= LARGEST_POSITION:
@@ -264,7 +258,7 @@ class JointPositions:
         # In this order, as another thread may look up poses meanwhile.
         self.values = changed
         self._stamps_of_values_ns[[*is_changed]] = stamp_ns
-        return invalid
+        return [self.names[dof] for dof in dofs[~is_valid].tolist()]
 
     def forget_stamps(self) -> None:
         """Accept any time next, after time has jumped back."""

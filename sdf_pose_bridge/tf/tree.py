@@ -192,13 +192,11 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     _check_frame_ids(frames, scene, options.root_frame, problems)
     problems.raise_errors()
     _warn_of_loops(tf_parents, scene, problems)
-    is_moving = options.use_joint_states or options.follows_models
-    motion = JointMotion(
-        scene, tf_parents, options.frame_names, options.others,
-    ) if is_moving or options.has_joint_links else None
-    if motion is not None and options.has_joint_links:
+    if options.has_joint_links:
+        motion = JointMotion(scene, tf_parents, options.frame_names)
         frames = frames.with_frames(frames_at_joints(
-            frames, scene, motion, tf_parents, naming, options.root_frame))
+            frames, scene, motion, tf_parents, naming, options.root_frame,
+            joints_move=options.use_joint_states))
     pose_frame = options.pose_frame or options.root_frame
     ids = [options.root_frame, *frames.ids]
     if pose_frame not in ids:
@@ -206,22 +204,18 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
         msg = f'there is no frame "{pose_frame}" to be the pose_frame{hint}'
         raise UnknownFrameError(msg, Place(scene.path))
     reference = ids.index(pose_frame) - 1
-    owners = frames.owners
-    if motion is not None and is_moving and not options.use_joint_states:
-        # Frames at joints move with the bodies behind them, as joints stay where they are.
-        owners = np.append(
-            np.arange(len(scene.kinds), dtype=np.int32), motion.moved_bodies)[owners]
-        motion = JointMotion(
-            scene, tf_parents._replace(joints={}), options.frame_names, options.others)
-    moving = None
-    if motion is not None and is_moving:
+    moving, odometry = None, {}
+    if options.use_joint_states or options.follows_models:
+        if not options.use_joint_states:
+            tf_parents = tf_parents._replace(joints={})
+        motion = JointMotion(scene, tf_parents, options.frame_names, options.others)
         others = {naming.frame_id_from_name(name): owner for owner, name in enumerate(
             options.others, len(scene.kinds) + len(motion.elements))}
         frames = frames.with_frames([
             Frame(each, others[each], ROOT_IS_PARENT, Pose())
             for each in sorted(others.keys() - {'', *ids})])
-        owners = np.append(owners, frames.owners[len(owners):])
-        moving = MovingFrames(motion, frames.poses, frames.parents, owners, reference)
+        moving = MovingFrames(motion, frames.poses, frames.parents, frames.owners, reference)
+        odometry = odometry_from_scene(scene, motion)
     return TfTree(
         root_frame=options.root_frame,
         frame_ids=tuple(frames.ids),
@@ -234,7 +228,7 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
         elements=np.where(np.arange(len(frames.ids)) < len(elements), frames.owners, -1),
         nearest_frames=nearest_frames,
         moving=moving,
-        odometry={} if motion is None else odometry_from_scene(scene, motion),
+        odometry=odometry,
         world=scene.world_names.get(0, ''),
         warnings=problems.warnings,
     )

@@ -146,7 +146,7 @@ class _RobotMaker:
         first, root = self._first_link()
         # The joints that move are named first, since joint_states has these names too.
         dofs: defaultdict[int, list[DegreeOfFreedom]] = defaultdict(list)
-        for dof, body in zip(self._motion.dofs, self._motion.moved_bodies.tolist(), strict=True):
+        for dof, body in zip(self._motion.dofs, self._motion.moved_bodies, strict=True):
             dofs[body].append(dof)
         bodies = {*self._elements, *np.flatnonzero(scene.parents < 0).tolist()}
         steps = [
