@@ -75,6 +75,22 @@ def test_names_of_a_joint_of_a_model_file(name):
     assert positions.selection([name]).dofs.tolist() == [0]
 
 
+def test_a_joint_that_is_renamed_keeps_its_own_name_too():
+    joints = joint(ENDS, 'b', 'revolute') + joint(
+        '<parent>b</parent><child>c</child>', 'k_joint', 'revolute')
+    positions = positions_of(model_file(LINKS + joints, version='1.6'))
+    assert positions.selection(['b_joint', 'b', 'k_joint', 'k']).dofs.tolist() == [0, 0, 1]
+
+
+def test_of_a_deeply_nested_name_the_last_ten_steps_are_enough():
+    text = LINKS + joint(ENDS, 'j', 'revolute')
+    for _ in range(11):
+        text = f'<model name="n">{text}</model>'
+    names = ['/'.join(['n'] * count + ['j']) for count in (9, 10)]
+    positions = positions_of(model_file(text))
+    assert positions.unknown([*names, f'm/{"n/" * 11}j']) == [names[1]]
+
+
 def test_names_of_joints_in_a_world_are_scoped():
     positions = positions_of(world_file(model('x') + model('y')))
     assert positions.names == ('x/j', 'y/j')
@@ -124,8 +140,8 @@ def test_a_message_about_a_joint_is_one_about_all_joints_of_its_model():
 
 def test_the_second_joint_that_a_screw_joint_has_in_urdf_is_not_unknown():
     text = model_file(
-        '<link name="a"/><link name="b"/>'
-        '<joint name="j" type="screw"><parent>a</parent><child>b</child></joint>')
+        f'{LINKS}<joint name="j" type="screw"><parent>a</parent><child>b</child></joint>'
+        + joint('<parent>b</parent><child>c</child>', 'k', 'revolute'))
     assert positions_of(text).unknown(['j', 'j_slide', 'k_slide']) == ['k_slide']
 
 
@@ -137,7 +153,7 @@ def test_the_name_of_a_joint_itself_comes_first():
 
 
 def test_of_several_models_one_can_have_all_names():
-    positions = positions_of(world_file(model('x') + model('y')), model='y')
+    positions = positions_of(world_file(model('x') + model('y') + model('yy')), model='y')
     assert positions.selection(['j']).dofs.tolist() == [1]
     assert positions.unknown(['x/j']) == ['x/j']
 
@@ -183,6 +199,7 @@ def test_a_follower_stays_while_its_leader_has_no_position():
     assert update(positions, j=np.nan) == ['j']
     assert values_of(positions) == {'j': 0.0, 'k': 0.0}
     assert not positions.is_reported.any()
+    assert positions.unreported() == (['j'], [])
 
 
 def test_the_position_of_a_follower_can_be_given():
@@ -193,14 +210,14 @@ def test_the_position_of_a_follower_can_be_given():
 
 
 def test_a_follower_of_a_follower_moves_with_it_unless_that_is_too_far():
-    positions = positions_of(model_file(LINKS + '<link name="d"/>' + joint(
-        ENDS + '<axis><xyz>0 0 1</xyz></axis>', 'j', 'revolute') + following() + joint(
-            '<parent>c</parent><child>d</child>' + MIMIC.format(leader='k', axis='axis'), 'l',
-            'revolute'), version='1.11'))
+    positions = positions_of(model_file(LINKS + '<link name="d"/><link name="e"/>' + joint(
+        ENDS + '<axis><xyz>0 0 1</xyz></axis>', 'j', 'revolute') + following() + ''.join(joint(
+            f'<parent>c</parent><child>{child}</child>' + MIMIC.format(leader=leader, axis='axis'),
+            name, 'revolute') for name, child, leader in ('ldk', 'iej')), version='1.11'))
     update(positions, j=2.0)
-    assert values_of(positions) == {'j': 2.0, 'k': 4.0, 'l': 8.0}
+    assert values_of(positions) == {'j': 2.0, 'k': 4.0, 'l': 8.0, 'i': 4.0}
     update(positions, j=LARGEST_POSITION)
-    assert values_of(positions) == {'j': LARGEST_POSITION, 'k': 4.0, 'l': 8.0}
+    assert values_of(positions) == {'j': LARGEST_POSITION, 'k': 4.0, 'l': 8.0, 'i': 4.0}
 
 
 def test_joints_that_follow_one_another_stop():
@@ -217,8 +234,11 @@ def test_joints_of_the_same_name_continue_in_another_scene():
     after = positions_of(model_file(
         LINKS + joint(ENDS, 'i', 'revolute')
         + joint('<parent>b</parent><child>c</child>', 'j', 'revolute')))
+    values = after.values
     after.take_over(before)
+    update(after, 4, j=1.0)
     assert values_of(after) == {'i': 0.0, 'j': 2.0}
+    assert values.tolist() == [0.0, 0.0]
     assert after.is_reported.tolist() == [name == 'j' for name in after.names]
     assert after.stamps_ns.tolist() == [5, 5]
 
@@ -264,6 +284,8 @@ def test_a_follower_does_not_follow_an_older_position():
 
 def test_stamps_can_be_ignored_or_forgotten():
     positions = positions_of(model_file(LINKS + joint(ENDS, 'j', 'revolute')))
+    positions.forget_stamps()
+    assert positions.reported_count == 0
     update(positions, 5, j=0.5)
     positions.update(positions.selection(['j']), np.array([0.25]), 4, ignore_stamps=True)
     assert positions.values.tolist() == [0.25]
@@ -313,9 +335,11 @@ def test_poses_and_positions_have_coordinates_of_their_own():
 def test_other_bodies_are_known_when_they_are_reported(unreported):
     positions = free_positions('p', others=('x', 'y'), unreported=unreported)
     assert (positions.names, positions.free_models) == (('p/j', 'p', 'x', 'y'), ('p',))
-    assert positions.is_known.tolist()[2:] == [False, False]
+    is_zero = unreported is UnreportedJoints.ZERO
+    assert positions.is_known.tolist() == [is_zero, is_zero, False, False]
     place(positions, 3, 2.0)
     assert positions.is_known.tolist()[2:] == [False, True]
+    assert positions.stamps_ns.tolist() == [-1, -1, 5, 5]
     assert (x_of(positions, 2), x_of(positions, 3)) == (0.0, 2.0)
 
 
@@ -343,6 +367,14 @@ def test_reported_poses_are_taken_over_by_models_of_the_same_name():
     assert (x_of(after, 3), x_of(after, 4), x_of(after, 5)) == (2.0, 0.0, 0.0)
     assert after.values[:3].tolist() == [0.0, 0.0, 0.5]
     assert after.unreported() == (['q/j', 'j/j'], ['j', 'p'])
+
+
+def test_a_model_does_not_take_over_the_position_of_a_joint():
+    before, after = positions_of(world_file(model('p') + model('q') + joint(
+        '<parent>p::a</parent><child>q::a</child>', 'j', 'revolute'))), free_positions('j')
+    update(before, j=0.5)
+    after.take_over(before)
+    assert after.reported_count == 0
 
 
 def test_the_model_of_a_file_that_was_spawned_has_a_scope():

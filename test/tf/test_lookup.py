@@ -49,7 +49,8 @@ ARM = model_file(
 @pytest.mark.parametrize(('frame', 'relative_to', 'reported', 'missing'), [
     ('upper', '', [], 'elbow'), ('upper', 'tool', ['elbow'], 'wrist'),
     ('tool', 'base', ['wrist'], 'elbow'), ('tool', 'hand', [], ''), ('base', '', [], ''),
-    ('m::hand', 'm::upper', ['wrist'], ''), ('tool', 'm', ['elbow', 'wrist'], '')])
+    ('m::hand', 'm::upper', ['wrist'], ''), ('tool', 'm', ['elbow', 'wrist'], ''),
+    ('base', 'upper', [], 'elbow')])
 def test_a_pose_behind_a_joint_needs_its_position(frame, relative_to, reported, missing):
     scene = load_text(ARM)
     tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
@@ -61,6 +62,30 @@ def test_a_pose_behind_a_joint_needs_its_position(frame, relative_to, reported, 
             lookup.pose(frame, relative_to)
     else:
         assert lookup.pose(frame, relative_to).pose == (0, 0, 0, 0, 0, 0, 1)
+
+
+FREE = ROBOT.replace('</model>', '<link name="arm"/>' + joint(
+    '<parent>base</parent><child>arm</child>', 'elbow', 'revolute') + '</model>')
+
+
+@pytest.mark.parametrize(('frame', 'relative_to', 'unreported'), [
+    ('robot', '', 'the pose of model "robot"'), ('', 'robot', 'the pose of model "robot"'),
+    ('robot/arm', 'robot/grip', 'joint "robot/elbow"'),
+    ('robot/grip', 'robot/arm', 'joint "robot/elbow"')])
+def test_poses_follow_a_model_and_need_its_pose(frame, relative_to, unreported):
+    scene = load_text(world_file(FREE))
+    tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True, follows_models=True))
+    positions = JointPositions(scene, tree.moving.motion)
+    lookup = PoseLookup(scene, tree, positions)
+    with pytest.raises(JointPositionError, match=f'depends on {unreported}, which'):
+        lookup.pose(frame or 'world', relative_to)
+    positions.update(positions.selection_of_models([1]), np.array([[4.0, *[0] * 5, 1]]))
+    place = matrix_from_degrees(4, 0, 0)
+    eye = place @ np.linalg.inv(BASE) @ EYE @ OPTICAL
+    assert_same_pose(lookup.pose('robot/base/eye_optical').pose, eye, name='eye')
+    assert_same_pose(lookup.pose('world', 'robot').pose, np.linalg.inv(place), name='world')
+    firsts = [lookup.first_dof(each) for each in ('robot/arm', 'robot', 'world', 'floor')]
+    assert firsts == [1, 1, -1, -1]
 
 
 @pytest.fixture(name='lookup')
@@ -88,6 +113,30 @@ def test_poses_by_the_names_of_sdf_and_of_tf(lookup, frame, relative_to, expecte
     assert found.frame_id == frame_id
 
 
+@pytest.mark.parametrize(('frame', 'element', 'in_element'), [
+    ('robot::grip', 'robot::grip', np.eye(4)), ('left/robot', 'robot', np.eye(4)),
+    ('left/robot/base/eye_optical', 'robot::base::eye', OPTICAL)])
+def test_the_element_that_places_a_frame(lookup, frame, element, in_element):
+    index, pose = lookup.element(frame)
+    assert_same_pose(pose, in_element, name=frame)
+    assert lookup.pose_of_element(index, 'map') == lookup.pose(element).pose
+    assert lookup.pose_of_element(index) == lookup.pose(element).pose
+
+
+def test_an_optical_frame_whose_camera_has_no_frame_has_no_element():
+    lookup = lookup_in(world_file(ROBOT.replace('<camera/>', '<camera/><frame_id>robot</frame_id>')
+                                  ), kinds=frozenset({Kind.SENSOR, Kind.MODEL}))
+    with pytest.raises(UnknownFrameError, match='a camera without a frame of its own'):
+        lookup.element('robot_optical')
+
+
+@pytest.mark.parametrize(('name', 'is_known'), [
+    ('map', True), ('left/robot', True), ('robot::base::shell', True), ('left/floor', False)])
+def test_which_names_are_known(lookup, name, is_known):
+    assert lookup.knows(name) is is_known
+    assert lookup.is_frame_id(name) is name.startswith('left/robot')
+
+
 @pytest.mark.parametrize(('frame', 'relative_to', 'sentence'), [
     ('robot::gripp', '',
      'no frame or element is called "robot::gripp"; did you mean "robot::grip"?'),
@@ -109,6 +158,7 @@ def test_where_a_text_is_both_the_name_of_sdf_is_meant():
         frame_names=FrameNames.RELATIVE, frame_separator='::', kinds=frozenset({Kind.LINK}))
     assert lookup.pose('a::b').pose.x == 1.0
     assert lookup.pose('m::a::b', 'a::b').pose.x == -1.0
+    assert lookup.pose_of_element(lookup.element('a::b')[0]).x == 1.0
 
 
 def test_a_model_file_is_looked_up_from_its_root():
