@@ -38,6 +38,8 @@ that read URDF name it too; its position follows from the first one."""
 _MOST_STEPS = 10
 """Largest number of innermost steps of a name that can replace it."""
 
+_MOST_NAMES_SHOWN = 6
+
 NEVER = -1
 """A time before all others, in nanoseconds."""
 
@@ -316,7 +318,7 @@ def scene_at_positions(scene: Scene, positions: Mapping[str, float]) -> Scene:
     selection = state.selection(list(positions))
     invalid = state.update(selection, np.array(list(positions.values()), float))
     for name in state.unknown(positions):
-        known = (f'the moving joints are {quoted_names(state.names)}'
+        known = (f'the moving joints are {quoted_names(state.names, _MOST_NAMES_SHOWN)}'
                  if state.names else 'the file has no moving joint')
         msg = f'"{name}" is not the name of one moving joint{state.hint(name)}; {known}'
         raise JointPositionError(msg, Place(scene.path))
