@@ -245,7 +245,7 @@ class JointPositions:
         dofs, new = selection.dofs, values[selection.rows]
         is_valid = np.abs(new) <= LARGEST_POSITION  # NaN is not
         if new.ndim > 1:
-            is_valid = is_valid.all(axis=1)
+            is_valid = np.all(is_valid, axis=1)
         is_taken = is_valid & (ignore_stamps | (self._stamps_of_values_ns[dofs] <= stamp_ns))
         for model in selection.models:
             self._stamps_of_models_ns[model] = max(self._stamps_of_models_ns[model], stamp_ns)
