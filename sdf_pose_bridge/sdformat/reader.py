@@ -90,15 +90,12 @@ def elements_from_tree(
 
 
 class _Scope(NamedTuple):
-    """The model, world or root whose names references use, or an actor."""
+    """The model, world or root whose names references use."""
 
-    table: ElementsBuilder
-    """Takes the elements in it."""
-    names: SiblingNames
     path: str
     """The file of the parent element, which a merged element may not share with its scope."""
     element: int = NO_ELEMENT
-    """Its index in the table; -1 for the file itself, and for a part of an actor."""
+    """Its index in the table; -1 for the file itself."""
     is_checked: bool = False
     """Whether all values in it are checked already, as those of an included file."""
 
@@ -112,11 +109,8 @@ class ElementReader:
         self._sources = sources
         self._reads_plugins = plugins
         self._table = ElementsBuilder(sources.paths, has_shapes=shapes)
-        self._parts_of_actors = ElementsBuilder(sources.paths)
-        """Links and joints of actors with their content, which are checked, but have no frames."""
+        self._names = SiblingNames(self._table, sources)
         self._undefined = UndefinedReporter(sources)
-        self._top = _Scope(self._table, SiblingNames(self._table, sources), '')
-        """The scope of the outermost element."""
         self._readers_of_details: dict[Kind, tuple[str, Callable[[XmlElement], Any]]] = {
             Kind.MODEL: ('models', _model_details),
             Kind.FRAME: ('frames', partial(_frame_details, sources=sources)),
@@ -135,7 +129,7 @@ class ElementReader:
     def elements(self, root: XmlElement) -> Elements:
         """Read worlds, and the one model, light or actor that may stand beside them."""
         definition = definition_of('sdf', has_frames=True)
-        top = self._top._replace(path=self._sources.path(root))
+        top = _Scope(self._sources.path(root))
         first = ''
         for child in root:
             child_definition = definition.children.get(child.tag)
@@ -160,7 +154,6 @@ class ElementReader:
                 self._read(child, child_definition, top._replace(element=index), index)
         if not self._table.names:
             self._sources.warning(root, 'the file has no world, model, light or actor')
-        self._parts_of_actors.elements(self._sources.problems)
         return self._table.elements(self._sources.problems)
 
     def is_valid(
@@ -174,9 +167,9 @@ class ElementReader:
         """
         before = self._sources.problems.error_count
         if definition.value is None:
-            self._read(xml, definition, self._top, with_children=with_children)
+            self._read(xml, definition, _Scope(''), with_children=with_children)
         else:
-            self._read_value(xml, definition, definition.value, self._top, NO_ELEMENT)
+            self._read_value(xml, definition, definition.value, _Scope(''), NO_ELEMENT)
         return self._sources.problems.error_count == before
 
     # The walk
@@ -190,6 +183,13 @@ class ElementReader:
 
         :param parent: index of its parent element; -1 if this has no frame.
         """
+        if definition.kind is not None and parent >= 0 and self._table.kinds[parent] == Kind.ACTOR:
+            # Nothing can refer to the links and joints of actors: they are only checked, and their
+            # names may repeat.
+            part = ElementReader(self._sources)
+            part._read(xml, definition, scope._replace(element=NO_ELEMENT), depth=depth)
+            part._table.elements(self._sources.problems)
+            return
         attributes = xml.keys()
         if attributes or definition.has_required_attributes:
             self._check_attributes(xml, attributes, definition, is_checked=scope.is_checked)
@@ -201,7 +201,7 @@ class ElementReader:
         elif definition in _CHECKS:
             _CHECKS[definition](xml, self._sources)
         elif definition.identifier == 'include' and parent != NO_ELEMENT:
-            missing_includes = scope.table.details['missing_includes']
+            missing_includes = self._table.details['missing_includes']
             missing_includes.setdefault(parent, {}).update(self._sources.origin(xml).missing)
             return
         self._sources.check_depth(depth, xml)
@@ -226,7 +226,7 @@ class ElementReader:
         if attributes or definition.has_required_attributes:
             self._check_attributes(xml, attributes, definition, is_checked=scope.is_checked)
         if definition.is_pose:
-            self._read_pose(xml, attributes, definition, scope, parent)
+            self._read_pose(xml, attributes, definition, parent)
         elif not rule.is_plain(xml.text or ''):
             fault, doubt = judged_value(text_of(xml), rule)
             if fault:
@@ -245,22 +245,16 @@ class ElementReader:
 
         :return: its index, or -1; and the scope of its content.
         """
-        if parent >= 0 and scope.table.kinds[parent] == Kind.ACTOR:
-            # Nothing can refer to the links and joints of actors, so their names may repeat.
-            parts = self._parts_of_actors
-            scope = _Scope(
-                parts, SiblingNames(parts, self._sources), scope.path,
-                is_checked=scope.is_checked)
-            parent = NO_ELEMENT
-        table, names, path, scope_element, is_checked = scope
-        name = names.add(kind, xml, parent, path) if definition.has_name else definition.identifier
+        table, path = self._table, scope.path
+        name = (self._names.add(kind, xml, parent, path) if definition.has_name
+                else definition.identifier)
         if name is None:
             return NO_ELEMENT, scope
         origin = self._sources.origin(xml)
         if origin.file is not None:
             path = origin.file
         index = table.add(
-            kind, name, parent, scope_element,
+            kind, name, parent, scope.element,
             self._sources.file_indices[origin.pose_file or path],
             self._sources.line(xml))
         if origin.include is not None:
@@ -274,8 +268,8 @@ class ElementReader:
             table.details['plugins'][index] = found
         if kind in _SCOPES or path != scope.path or origin.is_checked:
             scope = _Scope(
-                table, names, path, index if kind in _SCOPES else scope_element,
-                is_checked or origin.is_checked)
+                path, index if kind in _SCOPES else scope.element,
+                scope.is_checked or origin.is_checked)
         return index, scope
 
     # Attributes and poses
@@ -311,8 +305,7 @@ class ElementReader:
                 self._sources.error(error, xml, msg)
 
     def _read_pose(
-        self, xml: XmlElement, attributes: Sequence[str], definition: Definition, scope: _Scope,
-        parent: int,
+        self, xml: XmlElement, attributes: Sequence[str], definition: Definition, parent: int,
     ) -> None:
         """Keep the pose of an element, or check another pose."""
         text, pose_format = text_of(xml), EULER_RPY
@@ -325,22 +318,19 @@ class ElementReader:
             numbers, doubt = pose_numbers_from_text('', pose_format)
         if doubt:
             self._sources.warning(xml, doubt)
-        table = scope.table
         if parent == NO_ELEMENT:
             if definition.is_required and not text:
                 msg = f'<{written_tag(xml)}> is empty; it must have a value'
                 self._sources.error(ElementInvalidError, xml, msg)
-        elif parent in table.pose_lines:
+        elif parent in self._table.pose_lines:
             self._sources.warning(xml, 'a second <pose> is ignored; the first one counts')
         else:
             if attributes:
-                self._read_relative_to(xml, definition, table, parent)
-            table.set_pose(parent, text, numbers, pose_format, self._sources.line(xml))
+                self._read_relative_to(xml, definition, parent)
+            self._table.set_pose(parent, text, numbers, pose_format, self._sources.line(xml))
 
-    def _read_relative_to(
-        self, xml: XmlElement, definition: Definition, table: ElementsBuilder, index: int,
-    ) -> None:
-        relative_to = frame_of_attribute(xml, 'relative_to')
+    def _read_relative_to(self, xml: XmlElement, definition: Definition, index: int) -> None:
+        table, relative_to = self._table, frame_of_attribute(xml, 'relative_to')
         if not relative_to or 'relative_to' not in definition.attributes:
             return
         ignored = f'relative_to="{relative_to}" is ignored'
