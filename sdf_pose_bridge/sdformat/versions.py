@@ -133,18 +133,11 @@ def convert(root: XmlElement, version: Version, sources: Sources) -> None:
 
 
 def _report_deprecated(root: XmlElement, version: Version, sources: Sources) -> None:
-    deprecated = {
-        (parent, tag): new for since, parent, tag, new in _DEPRECATED if version >= since}
-    tags = {tag for _, tag in deprecated}
-    for xml in root.iter(*tags) if tags else ():
-        parent = xml.getparent()
-        if parent is None or not sources.problems.keeps_warnings():
-            return
-        parent_tag, tag = str(parent.tag), str(xml.tag)
-        new = deprecated.get((parent_tag, tag))
-        if new and not is_foreign(xml):
-            msg = f'<{tag}> in <{parent_tag}> is deprecated; the new element is {new}'
-            sources.warning(xml, msg)
+    for since, parent, tag, new in _DEPRECATED:
+        for xml in root.xpath(f'//{parent}/{tag}') if version >= since else ():
+            if not is_foreign(xml):
+                msg = f'<{tag}> in <{parent}> is deprecated; the new element is {new}'
+                sources.warning(xml, msg)
 
 
 def _move_elements(root: XmlElement, version: Version) -> None:
