@@ -123,12 +123,9 @@ class PoseText:
             keeps_rotation=keeps_rotation)
         if not words:
             return self._with_content(element, ' '.join(new_words).encode())
-        text, begin = b'', words[0].start()
-        position = begin
-        for word, new in zip(words, new_words, strict=True):
-            text += self._text[position:word.start()] + new.encode()
-            position = word.end()
-        return self._change(begin, position, text)
+        begin, end, remaining = words[0].start(), words[-1].end(), iter(new_words)
+        text = _WORD.sub(lambda _: next(remaining).encode(), self._text[begin:end])
+        return self._change(begin, end, text)
 
     def with_new_pose(self, element: int, pose: Pose, tolerance: float) -> FileChange:
         """

@@ -122,8 +122,6 @@ def doubt_about_numbers(text: str, numbers: Sequence[float]) -> str:
 
     :return: empty if they are those that are written, or if the text is blank.
     """
-    if plain_numbers_from_text(text) == numbers:
-        return ''
     words = words_of(text)
     try:
         written = [*map(float, words)]

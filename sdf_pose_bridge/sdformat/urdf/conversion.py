@@ -140,15 +140,13 @@ class _Conversion:
     # What Gazebo leaves out
 
     def _leave_out_trees(self) -> None:
-        kept = []
-        for xml in self._extensions.pop('', ()):
-            if xml.tag not in _GAZEBO_TAGS:
-                kept.append(xml)
-                continue
-            self._sources.warning(
-                xml, f'<{written_tag(xml)}> is for Gazebo alone, as ROS has only the tree of the '
-                'robot', is_for_gazebo=True)
-        self._extensions[''] = kept
+        children = self._extensions.get('', ())
+        self._extensions[''] = [xml for xml in children if xml.tag not in _GAZEBO_TAGS]
+        for xml in children:
+            if xml.tag in _GAZEBO_TAGS:
+                self._sources.warning(
+                    xml, f'<{written_tag(xml)}> is for Gazebo alone, as ROS has only the tree of '
+                    'the robot', is_for_gazebo=True)
 
     def _leave_out_content_of_lumped_joints(self) -> None:
         """Leave out what ``<gazebo>`` has for joints that Gazebo removes, or warn of it."""
