@@ -80,10 +80,9 @@ def default_references(
     :param attachments: the frame that each frame is attached to, of a joint its child; -1 for
         none.
     :return: the child of a joint, the attachment of an explicit frame, the parent of any other
-        element; -1 for worlds and implicit roots.
+        element; -1 for worlds and implicit roots, and for a joint without a child.
     """
-    is_attached = np.isin(kinds, (Kind.JOINT, Kind.FRAME)) & (attachments != NO_ELEMENT)
-    return np.where(is_attached, attachments, parents)
+    return np.where(np.isin(kinds, (Kind.JOINT, Kind.FRAME)), attachments, parents)
 
 
 class _Builder:
@@ -122,7 +121,7 @@ class _Builder:
     def _joint_ends(self, joint: int) -> tuple[int, int]:
         """Return the parent and the child of a joint; -1 for a name that names no frame."""
         details = self._elements.joints[joint]
-        for axis in filter(None, details.axes if self._elements.missing_includes else ()):
+        for axis in filter(None, details.axes):
             for reference in filter(None, (axis.expressed_in, axis.mimic and axis.mimic.leader)):
                 self._frame(joint, reference.name, NO_ELEMENT)
         parent, child = details.parent.name, details.child.name
@@ -181,13 +180,10 @@ class _Builder:
         kinds: list[int] = self._elements.kinds.tolist()
         body_of: list[int] = bodies.tolist()
         links = [NO_ELEMENT] * len(kinds)
-        for model, target in canonical.items():  # inner models come first
-            if target >= 0 and kinds[target] != Kind.MODEL:
-                link = body_of[target]
-            else:
-                # A model outside the model does not lead to a link.
-                link = links[target] if target > model else NO_ELEMENT
-            if link >= 0 and kinds[link] == Kind.LINK:
+        for model, target in canonical.items():
+            # Inner models come first, so a model outside the model does not lead to a link.
+            link = links[target] if kinds[target] == Kind.MODEL else body_of[target]
+            if target >= 0 and link >= 0 and kinds[link] == Kind.LINK:
                 links[model] = link
         return np.array(links, dtype=np.int32)
 

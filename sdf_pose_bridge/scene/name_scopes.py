@@ -75,18 +75,13 @@ class NameScopes:
 
     def missing_uri(self, scope: int, reference: str) -> str:
         """Return the URI of the missing include that a reference leads into, or ''."""
-        missing = self._elements.missing_includes
-        if not missing:
-            return ''
         steps = reference.split(SEPARATOR, _MOST_STEPS)
-        end = 0
         for count, step in enumerate(steps):
-            outer = self.frame(scope, reference[:end]) if count else scope
-            uris = missing.get(NO_ELEMENT if outer is None else outer, {})
+            outer = self.frame(scope, SEPARATOR.join(steps[:count])) if count else scope
+            uris = self._elements.missing_includes.get(NO_ELEMENT if outer is None else outer, {})
             uri = uris.get(step) or uris.get('')
             if uri:
                 return uri
-            end += len(step) + (len(SEPARATOR) if count else 0)
         return ''
 
     def _described(self, scope: int) -> str:

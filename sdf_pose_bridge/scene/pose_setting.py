@@ -121,10 +121,12 @@ def _change_of_own_pose(
     if not all_instances:
         _check_instances(marked, element, place, at)
     reference = int(scene.references[element])
-    in_asked, old = measure(scene, reference), measure(scene, element)
-    _check_joints(scene, element, relative_pose(in_asked, old), at)
-    written = text.pose(target) if is_written else relative_pose(in_asked, old)
-    current, tolerance = old, TOLERANCE
+    in_asked, current = measure(scene, reference), measure(scene, element)
+    in_reference = relative_pose(in_asked, current)
+    _check_joints(scene, element, in_reference, at)
+    written = text.pose(target) if is_written else in_reference
+    with_pose = text.with_pose if is_written else text.with_new_pose
+    tolerance = TOLERANCE
     for _ in range(_MOST_ATTEMPTS):
         # The element has the pose C in the frame that the pose in the file places, most often the
         # identity. So requested = R written C, before and after the change, and C follows from the
@@ -132,8 +134,7 @@ def _change_of_own_pose(
         there = pose_product(pose_product(asked, pose_inverse(current)), in_asked)
         written = pose_product(relative_pose(in_asked, there), written)
         written = Pose(*written[:3], *canonical_quaternion(written[3:]))
-        change = text.with_pose(target, written, tolerance) if is_written else (
-            text.with_new_pose(target, written, tolerance))
+        change = with_pose(target, written, tolerance)
         try:
             new = load({path: change.new_text})
         except SdfError as error:

@@ -96,9 +96,8 @@ def optical_frames_of_cameras(
     :param optical_names: the names of optical frames that frame ids of cameras mean.
     :return: the optical frames, without those that the file has already.
     """
-    indices: dict[str, int] = {}
-    for index, frame_id in enumerate(frames.ids):
-        indices.setdefault(frame_id, index)
+    # Of two with the same id the first one counts.
+    indices = {frame_id: index for index, frame_id in reversed([*enumerate(frames.ids)])}
     poses: dict[str, Pose] = {}
     optical_frames = []
     cameras = [sensor for sensor in sensor_names if scene.sensors[sensor].is_camera]

@@ -55,11 +55,11 @@ def loaded_scene_from_request(
         scene, tree.moving.motion, options.model, request.unreported_joints,
         is_spawned=bool(request.model_name))
     description = '' if tree.world else unicode_text(text)
-    warnings_of_urdf: tuple[SdfWarning, ...] = ()
     if is_made_urdf and scene.urdf_root is None:
         description, warnings_of_urdf = _urdf(scene, request)
+        warnings += warnings_of_urdf
     # The tree and the URDF may have the same warnings.
-    found = dict.fromkeys((*warnings, *warnings_of_urdf, *scene.warnings, *tree.warnings))
+    found = dict.fromkeys((*warnings, *scene.warnings, *tree.warnings))
     return LoadedScene(
         request=request,
         path=Path(path),
