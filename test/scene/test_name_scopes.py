@@ -99,6 +99,14 @@ def test_reference_names_a_frame_of_its_own_world():
     assert sdf_pose_bridge.load_text(text).pose('g')[:3] == (2, 0, 0)
 
 
+@pytest.mark.parametrize('content', ['{link}{model}', '{model}{link}'])
+def test_a_name_with_a_separator_cannot_be_that_of_another_element(content):
+    message = only_error(model_file(content.format(
+        link='<link name="n::k"/>', model='<model name="n"><link name="k"/></model>'),
+        version='1.6')).message
+    assert message.startswith('the name "m::n::k" is in use already')
+
+
 # Hints in messages
 
 @pytest.mark.parametrize(('text', 'words'), [
@@ -112,6 +120,10 @@ def test_reference_names_a_frame_of_its_own_world():
     (in_nested('l'), ['enclosing scopes']),
     (in_nested('n2/deep'), ['has a frame "n2::deep", but names of enclosing scopes']),
     (in_nested('zzz'), ['model "m::n::n2"']),
+    (in_nested('__modl__'), ['did you mean "__model__"?']),
+    (in_world('wrld'), ['did you mean "world"?']),
+    (world_file(posed('frame', 'r', '') + '<model name="m"><link name="l"/>'
+                + posed('frame', 'f', '', 'r') + '</model>'), ['world "w" has a frame "r"']),
     (in_world('zzz'), ['world "w"']),
 ])
 def test_message_helps_to_find_the_name(text, words):

@@ -2,9 +2,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """Poses in the root: chains of references, and placement frames."""
 
+from dataclasses import fields
+
 import numpy as np
 import pytest
-from sdf_texts import assert_at, fixed_joint, model_file, only_error, posed, world_file
+from sdf_texts import (
+    assert_at,
+    fixed_joint,
+    joint,
+    model_file,
+    only_error,
+    posed,
+    TWO_LINKS,
+    world_file,
+)
 
 from sdf_pose_bridge import load_text
 
@@ -57,6 +68,33 @@ def test_automatic_inertial_that_is_too_large_is_an_error(size):
         '<link name="l"><inertial auto="true"/><collision name="c"><geometry><box>'
         f'<size>{size}</size></box></geometry></collision></link>'))
     assert error.code in ('LINK_INERTIA_INVALID', 'ELEMENT_INVALID')
+
+
+def test_elements_that_are_left_out_change_nothing_else():
+    mimic = '<axis><xyz>0 0 1</xyz><mimic joint="{}"/></axis>'
+    box = '<geometry><box><size>1 2 3</size></box></geometry>'
+    text = world_file(
+        f'{{}}<model name="m" placement_frame="f">{TWO_LINKS}<link name="c">'
+        f'<inertial auto="true"/><collision name="c">{box}</collision>'
+        f'<visual name="v">{box}</visual>'
+        '<sensor name="s" type="camera"><camera/></sensor></link><plugin name="p" filename="p"/>'
+        + posed('frame', 'f', '1 0 0 0 0 0', 'b')
+        + joint('<parent>a</parent><child>b</child><axis><xyz>1 0 0</xyz></axis>', 'j', 'revolute')
+        + joint(f'<parent>b</parent><child>c</child>{mimic.format("j")}', 'k', 'revolute')
+        + f'<model name="n"><static>1</static>{TWO_LINKS}</model><model name="o">{TWO_LINKS}'
+        + joint(f'<parent>a</parent><child>b</child>{mimic.format("zzz")}', 'l', 'revolute')
+        + '</model></model>', version='1.11').replace('</sdf>', '<world name="v"/></sdf>')
+    ghost = posed('light', 'ghost', '1e301 0 0 0 0 0', 'zzz')
+    plain, scene = (
+        load_text(text.format(first), shapes=True, plugins=True) for first in ('', ghost))
+    assert [axis.mimic is not None for joint in scene.joints for axis in joint.axes[:1]] == [
+        False, True, False]
+    assert [*scene.world_names.values()] == ['w', 'v']
+    assert scene.bodies[scene.index('m::c::v')] == -1
+    for name in [each.name for each in fields(scene) if each.name != 'warnings']:
+        found, expected = getattr(scene, name), getattr(plain, name)
+        is_array = isinstance(found, np.ndarray)
+        assert np.array_equal(found, expected) if is_array else found == expected, name
 
 
 # Placement frames

@@ -82,15 +82,6 @@ def test_a_joint_that_is_renamed_keeps_its_own_name_too():
     assert positions.selection(['b_joint', 'b', 'k_joint', 'k']).dofs.tolist() == [0, 0, 1]
 
 
-def test_of_a_deeply_nested_name_the_last_ten_steps_are_enough():
-    text = LINKS + joint(ENDS, 'j', 'revolute')
-    for _ in range(11):
-        text = f'<model name="n">{text}</model>'
-    names = ['/'.join(['n'] * count + ['j']) for count in (9, 10)]
-    positions = positions_of(model_file(text))
-    assert positions.unknown([*names, f'm/{"n/" * 11}j']) == [names[1]]
-
-
 def test_names_of_joints_in_a_world_are_scoped():
     positions = positions_of(world_file(model('x') + model('y')))
     assert positions.names == ('x/j', 'y/j')

@@ -228,8 +228,9 @@ A, B = model('a', LINKS), model('b', LINKS)
     (model('b', model('n', LINKS)), '', ['b']),
     (A + model('ab', LINKS + model('n', LINKS)), 'ab::n', ['ab', 'ab::n']),
     (A + model('ab', LINKS + model('n', LINKS)), 'a', ['a']),
+    (f'{A}</world><world name="v">{B}', '', ['a']),
 ], ids=['all', 'static', 'joined to the world', 'joined to another', 'nested', 'joined nested',
-        'canonical link in a nested one', 'only a nested one', 'only one'])
+        'canonical link in a nested one', 'only a nested one', 'only one', 'in another world'])
 def test_models_move_freely_unless_they_are_static_or_joined(content, only_model, expected):
     scene = sdf_pose_bridge.load_text(world_file(content))
     found = tf_parents_from_scene(scene).with_free_models(
@@ -242,14 +243,6 @@ def test_models_in_a_model_without_a_transform_stay_in_it():
     scene = sdf_pose_bridge.load_text(world_file(A + model('b', LINKS + model('n', LINKS))))
     found = tf_parents_from_scene(scene).with_free_models(
         scene, np.array([name == 'b::a' for name in scene.names]), '')
-    assert [scene.names[each] for each in found.free_models.values()] == ['a']
-
-
-def test_models_of_another_world_do_not_move():
-    scene = sdf_pose_bridge.load_text(
-        f'<sdf version="1.10"><world name="w">{A}</world><world name="v">{B}</world></sdf>')
-    found = tf_parents_from_scene(scene).with_free_models(
-        scene, np.zeros(len(scene.names), np.bool_), '')
     assert [scene.names[each] for each in found.free_models.values()] == ['a']
 
 

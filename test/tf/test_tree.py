@@ -341,31 +341,21 @@ def test_the_examples_need_no_options(path):
 
 @settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(random_scenes(), st.sampled_from(AnchorModels), st.sets(st.sampled_from(sorted(ALL_KINDS))),
-       st.sampled_from(['/', '::']), st.booleans())
-def test_random_scenes_are_trees(drawn, anchor, kinds, separator, optical_frames):
+       st.sampled_from(['/', '::']), st.booleans(), st.data())
+def test_random_scenes_and_their_models_are_trees(
+        drawn, anchor, kinds, separator, optical_frames, data):
     scene = sdf_pose_bridge.load_text(drawn.text())
+    model = data.draw(st.sampled_from(['', *(each.scoped_name for each in drawn.models)]))
     tree = tf_tree_from_scene(scene, TfOptions(
-        kinds=frozenset(kinds), anchor_models=anchor, frame_names=FrameNames.SCOPED,
+        kinds=frozenset(kinds), anchor_models=anchor, frame_names=FrameNames.SCOPED, model=model,
         frame_separator=separator, optical_frames=optical_frames))
     assert_is_tree(tree)
     if separator == '/':
-        ids = scoped_ids(scene, kinds)
+        ids = {
+            index: frame_id for index, frame_id in scoped_ids(scene, kinds).items()
+            if not model or f'{scene.names[index]}::'.startswith(f'{model}::')}
         assert_has_poses_of(tree, scene, ids)
         assert {i for i in tree.frame_ids if not i.endswith('_optical')} == set(ids.values())
-
-
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
-@given(random_scenes(), st.data())
-def test_one_model_of_a_random_scene_is_a_tree(drawn, data):
-    scene = sdf_pose_bridge.load_text(drawn.text())
-    name = data.draw(st.sampled_from(drawn.models)).scoped_name
-    tree = tf_tree_from_scene(
-        scene, TfOptions(kinds=ALL_KINDS, model=name, frame_names=FrameNames.SCOPED))
-    assert_is_tree(tree)
-    inside = {
-        index: frame_id for index, frame_id in scoped_ids(scene, ALL_KINDS).items()
-        if f'{scene.names[index]}::'.startswith(f'{name}::')}
-    assert_has_poses_of(tree, scene, inside)
 
 
 def test_other_bodies_get_the_frame_ids_that_are_free():
