@@ -102,25 +102,16 @@ def status_from_scene(
         'first model not reported': next(iter(states.models), ''),
         'problems of topics': len(states.problems),
     }
+    error = '; '.join(states.failures)
     if failure:
-        level = DiagnosticStatus.ERROR
-        text = f'the last load failed, the scene before it is published: {failure[0]}'
-    elif states.failures:
-        level = DiagnosticStatus.ERROR
-        text = '; '.join(states.failures)
-    elif states.problems:
-        level = DiagnosticStatus.WARN
-        text = '; '.join(states.problems)
-    elif states.joints or states.models:
-        level = DiagnosticStatus.WARN
-        text = states.line_about_unreported()
-    elif warnings:
-        level = DiagnosticStatus.WARN
-        text = f'serving {loaded.path.name} with {count_in_words(len(warnings), "warning")}'
-    else:
-        level = DiagnosticStatus.OK
-        text = f'serving {loaded.path.name}'
+        error = f'the last load failed, the scene before it is published: {failure[0]}'
+    text = f'serving {loaded.path.name}'
+    warning = '; '.join(states.problems) or states.line_about_unreported()
+    if warnings and not warning:
+        warning = f'{text} with {count_in_words(len(warnings), "warning")}'
+    level = DiagnosticStatus.WARN if warning else DiagnosticStatus.OK
     return DiagnosticStatus(
-        level=level, name=f'{name}: file', message=line_from_text(text), hardware_id='',
+        level=DiagnosticStatus.ERROR if error else level, name=f'{name}: file',
+        message=line_from_text(error or warning or text),
         values=[*(KeyValue(key=key, value=line_from_text(value)) for key, value in values.items()),
                 KeyValue(key='last error', value='\n'.join(failure))])
