@@ -48,12 +48,10 @@ _LARGEST_DEPTH = 2**31 - 1
 _POLICIES = {
     'reliability': ReliabilityPolicy, 'durability': DurabilityPolicy, 'history': HistoryPolicy}
 
-_OVERRIDABLE: Mapping[str, Mapping[str, Sequence[str]]] = {
-    'joint_states': {'subscription': ('reliability', 'durability')},
-    'parameter_events': {},
-    'tf': {'publisher': ('history', 'depth', 'reliability')},
-    'tf_static': {'publisher': ('history', 'depth', 'reliability')},
-}
+_OF_PUBLISHER = ('publisher.history', 'publisher.depth', 'publisher.reliability')
+_OVERRIDABLE = {
+    'joint_states': ('subscription.reliability', 'subscription.durability'),
+    'parameter_events': (), 'tf': _OF_PUBLISHER, 'tf_static': _OF_PUBLISHER}
 """The policies that parameters can override, for the topics of robot_state_publisher."""
 
 _NAMES_OF_TYPES = {
@@ -171,16 +169,11 @@ def _reason_without_effect(name: str) -> str:
     """Return why a parameter of robot_state_publisher changes nothing here; else empty."""
     if name == 'description_from_topic':
         return 'set robot_description to the text, or sdf_file to a file'
-    parts = name.removeprefix(QOS_OVERRIDES).rsplit('.', 2)
-    topic = parts[0]
-    last = topic.rpartition('/')[2]
-    if not name.startswith(QOS_OVERRIDES) or len(parts) != 3 or last not in _OVERRIDABLE or (
-            parts[2] in _OVERRIDABLE[last].get(parts[1], ())):
+    topic, _, policy = name.removeprefix(QOS_OVERRIDES).partition('.')
+    known = _OVERRIDABLE.get(topic.rpartition('/')[2])
+    if not name.startswith(QOS_OVERRIDES) or not policy or known is None or policy in known:
         return ''
-    possible = [
-        f'{each} of its {known}' for known, policies in _OVERRIDABLE[last].items()
-        for each in policies]
-    return f'of {topic}, one can override {", ".join(possible) or "nothing"}'
+    return f'of {topic}, one can override {", ".join(known) or "nothing"}'
 
 
 class ParameterServices:

@@ -298,10 +298,9 @@ def test_a_value_that_no_policy_has_ends_the_start(make_node, policy, value, rul
 
 
 @pytest.mark.parametrize(('name', 'possible'), [
-    ('/joint_states.subscription.history',
-     'reliability of its subscription, durability of its subscription'),
+    ('/joint_states.subscription.history', 'subscription.reliability, subscription.durability'),
     ('/r1/tf.publisher.durability',
-     'history of its publisher, depth of its publisher, reliability of its publisher'),
+     'publisher.history, publisher.depth, publisher.reliability'),
     ('/parameter_events.publisher.depth', 'nothing'),
 ])
 def test_an_override_without_effect_is_told(make_node, name, possible):
