@@ -140,7 +140,7 @@ def lines_about_scene(loaded: LoadedScene) -> list[str]:
         f'{size} (read in {1e3 * loaded.seconds:.0f} ms)',
         line_about_prefix(loaded.request.tf_options.frame_prefix),
         line_about_gazebo(loaded.gazebo_warning_count),
-        line_about_detached_models(tree, loaded.scene)]
+        line_about_detached_models(tree)]
     return [line for line in lines if line]
 
 
@@ -170,19 +170,9 @@ def lines_about_lost_frames(before: TfTree, after: TfTree) -> list[str]:
         for what, found in frames.items() if found]
 
 
-def line_about_detached_models(tree: TfTree, scene: Scene) -> str:
+def line_about_detached_models(tree: TfTree) -> str:
     """Return a line with the roots of trees without a parent frame; '' if there are none."""
-    is_parent = np.isin(np.arange(len(tree.parents)), tree.parents)
-    roots: dict[int, list[int]] = {}
-    for frame in np.flatnonzero(tree.parents == NO_PARENT).tolist():
-        element = int(tree.elements[frame])
-        # An optical frame has none.
-        top = scene.top_level_element(element) if element >= 0 else element
-        roots.setdefault(top, []).append(frame)
-    # Other frames of a model have no parent if their links are not published.
-    names = [
-        tree.frame_ids[frame] for frames in roots.values()
-        for frame in [each for each in frames if is_parent[each]] or frames[:1]]
+    names = list(compress(tree.frame_ids, (tree.parents == NO_PARENT).tolist()))
     if not names:
         return ''
     what = 'the root of its tree' if len(names) == 1 else 'the roots of their trees'

@@ -249,9 +249,8 @@ def test_joints_that_stand_still_are_those_that_messages_have_to_name(content):
 
 def test_models_without_a_transform_from_the_root_are_named():
     def line(text, **options):
-        scene = load_text(text)
         return line_about_detached_models(
-            tf_tree_from_scene(scene, TfOptions(root_frame='map', **options)), scene)
+            tf_tree_from_scene(load_text(text), TfOptions(root_frame='map', **options)))
 
     arm = '<model name="arm"><link name="l"/><model name="hand"><link name="l"/></model></model>'
     assert line(world_file(arm)) == ''
@@ -269,9 +268,9 @@ def test_a_leaf_beside_the_root_is_not_named():
         '<frame name="g" attached_to="f"/></model></sdf>')
     tree = tf_tree_from_scene(scene, TfOptions(kinds=frozenset({Kind.FRAME})))
     assert tree.parent_ids == ('', 'f')
-    assert 'no transform to "f", the root' in line_about_detached_models(tree, scene)
+    assert 'no transform to "f", the root' in line_about_detached_models(tree)
     tree = tf_tree_from_scene(scene, TfOptions(frame_prefix='r/'))
-    assert 'no transform to "r/a", the root' in line_about_detached_models(tree, scene)
+    assert 'no transform to "r/a", the root' in line_about_detached_models(tree)
 
 
 def test_the_line_about_a_urdf_names_its_root_and_its_link_world():
@@ -279,7 +278,7 @@ def test_the_line_about_a_urdf_names_its_root_and_its_link_world():
     for root in ('base', 'world'):
         scene = load_text(links.format(root, root) + '</robot>')
         tree = tf_tree_from_scene(scene, TfOptions(frame_prefix='r/'))
-        assert f'no transform to "r/{root}", the root' in line_about_detached_models(tree, scene)
+        assert f'no transform to "r/{root}", the root' in line_about_detached_models(tree)
 
 
 def test_warnings_for_gazebo_are_counted():
