@@ -66,15 +66,13 @@ def add_services(node: Node, lookup: Callable[[], Awaitable[PoseLookup]]) -> Non
 
     :param lookup: returns the current look-up of poses.
     """
-    logger, clock = node.get_logger(), node.get_clock()
     # It answers requests that may take long, one after the other.
     worker = Worker(node, 'conversions')
 
-    def answered(answer: Answer, request: Any, response: Any) -> Any:
-        return response_from_answer(answer, request, response, logger.error)
+    answered = partial(response_from_answer, log_error=node.get_logger().error)
 
-    async def answered_in_thread(answer: Answer, request: Any, response: Any) -> Any:
-        return await worker.run(lambda: answered(answer, request, response))
+    async def answered_in_thread(*call: Any) -> Any:
+        return await worker.run(partial(answered, *call))
 
     async def convert_poses(request: ConvertPoses.Request, response: ConvertPoses.Response) -> Any:
         if len(request.values) <= FEW_NUMBERS:
@@ -83,7 +81,7 @@ def add_services(node: Node, lookup: Callable[[], Awaitable[PoseLookup]]) -> Non
 
     async def lookup_pose(request: LookupPose.Request, response: LookupPose.Response) -> Any:
         current = await lookup()
-        answer = partial(answer_to_lookup_pose, lookup=current, clock=clock)
+        answer = partial(answer_to_lookup_pose, lookup=current, clock=node.get_clock())
         if current.knows(request.frame) and (
                 not request.relative_to or current.knows(request.relative_to)):
             return answered(answer, request, response)
