@@ -17,15 +17,19 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 import struct
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sdf_pose_bridge.geometry.poses import PoseArray
+from sdf_pose_bridge.geometry.rotations import Floats
 
 NANOSECONDS = 1_000_000_000
 """In a second."""
+
+Rows: TypeAlias = NDArray[np.intp]
+"""Indices of records, such as those of the transforms that joints move."""
 
 # Sizes in bytes.
 _LENGTH = 4
@@ -93,7 +97,7 @@ class StampedRecords:
         self._buffer.view('<f8')[self._numbers] = poses
 
     def set_stamps(
-        self, stamps_ns: NDArray[np.int64] | int, rows: NDArray[np.intp] | slice = slice(None),
+        self, stamps_ns: NDArray[np.int64] | int, rows: Rows | slice = slice(None),
     ) -> None:
         """
         Replace the stamps.
@@ -109,7 +113,7 @@ class StampedRecords:
         data = self._buffer.tobytes()
         return [_BEGIN + data[begin:end] for begin, end in pairwise(self._bounds)]
 
-    def tf_message(self, rows: NDArray[np.intp] | None = None) -> bytes:
+    def tf_message(self, rows: Rows | None = None) -> bytes:
         """
         Return one tf2_msgs/TFMessage of records that are transforms.
 
@@ -139,7 +143,7 @@ class SerializedNames(NamedTuple):
 
 def joint_state_from_bytes(
     data: bytes, known: SerializedNames | None = None,
-) -> tuple[int, SerializedNames, NDArray[np.float64]]:
+) -> tuple[int, SerializedNames, Floats]:
     """
     Read a message.
 

@@ -5,7 +5,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from sdf_pose_bridge.geometry.rotations import Floats
 
 _LEAST_CONTRADICTIONS = 3
 """Smallest number of contradictions in a period; a publisher that starts again has one."""
@@ -26,14 +27,14 @@ class MessageCounts:
         """The number that its publisher has given the last message; None if it has none."""
         self._contradictions = 0
         # Stamps and values of up to two messages before the next one, if they have no numbers.
-        self._last: list[tuple[int, NDArray[np.float64]]] = []
+        self._last: list[tuple[int, Floats]] = []
 
     @property
     def have_several_publishers(self) -> bool:
         """Whether one publisher cannot have sent the messages of this period."""
         return self._contradictions >= _LEAST_CONTRADICTIONS
 
-    def add(self, stamp_ns: int, values: NDArray[np.float64], number: int | None) -> None:
+    def add(self, stamp_ns: int, values: Floats, number: int | None) -> None:
         """
         Count a message, and whether the publisher of the one before cannot have sent it.
 
@@ -58,7 +59,7 @@ class MessageCounts:
         self.periods = self.periods + 1 if self.messages else 0
         self.messages = self._contradictions = 0
 
-    def _contradicts(self, stamp_ns: int, values: NDArray[np.float64]) -> bool:
+    def _contradicts(self, stamp_ns: int, values: Floats) -> bool:
         with np.errstate(all='ignore'):  # values need not be finite
             changes = [values - each for _, each in self._last]
             # Squares of the distances.

@@ -8,10 +8,6 @@ from collections import Counter
 from collections.abc import Collection, Iterable
 from functools import partial
 import time
-from typing import NamedTuple
-
-import numpy as np
-from numpy.typing import NDArray
 
 from sdf_pose_bridge.ros.cdr import NANOSECONDS
 from sdf_pose_bridge.ros.log_lines import names_in_line
@@ -26,16 +22,6 @@ _LEAST_AGE_NS = 1_000_000
 one nanosecond newer after a reload."""
 
 
-class Lateness(NamedTuple):
-    """Messages of a source that move nothing, as their stamps are old."""
-
-    line: str
-    rows: NDArray[np.intp]
-    """The transforms that have waited longest for a newer stamp."""
-    last_ns: int
-    """Their last stamp."""
-
-
 class MessageProblems:
     """
     The problems of messages that move the same frames.
@@ -45,7 +31,7 @@ class MessageProblems:
 
     def __init__(self, frames: MovingTopics) -> None:
         self._frames, self._positions = frames, frames.positions
-        self._late: dict[StateSource, Lateness] = {}
+        self._late: dict[StateSource, Effect] = {}
         self._lines_about_publishers: list[str] = []
 
     def note_lateness(self, effect: Effect, stamp_ns: int, now_ns: int) -> None:
@@ -57,11 +43,10 @@ class MessageProblems:
         :param now_ns: the time of the node; 0 before the first message on ``/clock``.
         """
         source, now = effect.source, time.monotonic()
-        stamps_ns = self._frames.last_stamps_ns(effect.rows)
-        last_ns = int(stamps_ns.min())
+        last_ns = self._last_ns(effect)
         if last_ns - stamp_ns < _LEAST_AGE_NS or last_ns != effect.late_after_ns:
             # Others may move them, such as a second publisher with newer stamps.
-            effect.late_since, effect.late_after_ns = now, last_ns
+            effect.late_since, effect.late_after_ns, effect.late_line = now, last_ns, ''
         elif now - effect.late_since > LATE_S and not self._is_late(source):
             first = self._positions.names[effect.selection.changed[0]]
             line = (
@@ -71,21 +56,23 @@ class MessageProblems:
                 'wrong, or set ignore_timestamp:=true') if now_ns else (
                 'messages move nothing, as their stamps have gone back; with use_sim_time, this '
                 'needs /clock, so play the bag with "ros2 bag play --clock"')
-            is_new = all(each.line != line for each in self._late.values())
-            self._late[source] = Lateness(line, effect.rows[stamps_ns == last_ns], last_ns)
+            is_new = all(each.late_line != line for each in self._late.values())
+            self._late[source], effect.late_line = effect, line
             if is_new:
                 source.warn('stamps', lambda: line)
 
     def lines(self, sources: Iterable[StateSource]) -> list[str]:
         """Return a line for each source that moves nothing, and for publishers of one joint."""
-        late = [each for each in sources if self._is_late(each)]
-        lines = dict.fromkeys(self._late[each].line for each in late)
-        return [*lines, *self._lines_about_publishers]
+        late = [self._late[each].late_line for each in sources if self._is_late(each)]
+        return [*dict.fromkeys(late), *self._lines_about_publishers]
 
     def _is_late(self, source: StateSource) -> bool:
         late = self._late.get(source)
-        return late is not None and bool(
-            (self._frames.last_stamps_ns(late.rows) == late.last_ns).all())
+        return late is not None and late.late_line != '' and (
+            self._last_ns(late) == late.late_after_ns)
+
+    def _last_ns(self, effect: Effect) -> int:
+        return int(self._frames.last_stamps_ns(effect.rows).min())
 
     def look_at_publishers(self, effects: Collection[Effect]) -> None:
         """

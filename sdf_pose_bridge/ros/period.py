@@ -16,9 +16,10 @@ import math
 from typing import Generic, Protocol, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-NO_ROWS: NDArray[np.intp] = np.array([], np.intp)
+from sdf_pose_bridge.ros.cdr import Rows
+
+NO_ROWS: Rows = np.array([], np.intp)
 
 
 class _Source(Protocol):
@@ -47,11 +48,11 @@ class Period(Generic[_AnySource]):
         """Begin a period after a publication."""
         self.ends_ns, self.awaited = ends_ns, awaited
 
-    def add(self, rows: NDArray[np.intp]) -> None:
+    def add(self, rows: Rows) -> None:
         """Have transforms wait for the end."""
         self._rows = union([self._rows, rows])
 
-    def publish_early(self, rows: NDArray[np.intp], now_ns: int) -> None:
+    def publish_early(self, rows: Rows, now_ns: int) -> None:
         """Note transforms that are published before the end, and the sources that moved them."""
         self._rows = np.setdiff1d(self._rows, rows)
         self.awaited = [each for each in self.awaited if each.last_ns < now_ns]
@@ -60,13 +61,13 @@ class Period(Generic[_AnySource]):
         """Let no transforms wait."""
         self._rows = NO_ROWS
 
-    def end(self, sources: Sequence[_AnySource]) -> NDArray[np.intp]:
+    def end(self, sources: Sequence[_AnySource]) -> Rows:
         """End the period, and await all sources; return the transforms that have waited."""
         rows, self._rows = self._rows, NO_ROWS
         self.begin(math.inf, sources)
         return rows
 
 
-def union(parts: Sequence[NDArray[np.intp]]) -> NDArray[np.intp]:
+def union(parts: Sequence[Rows]) -> Rows:
     """Return the rows of all parts in ascending order."""
     return np.unique(np.concatenate([NO_ROWS, *parts]))

@@ -21,7 +21,7 @@ from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.ros.background import result_from_executor
-from sdf_pose_bridge.ros.cdr import StampedRecords
+from sdf_pose_bridge.ros.cdr import Rows, StampedRecords
 from sdf_pose_bridge.ros.log_lines import line_from_text
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.publishers import Publishers, Topic
@@ -172,15 +172,15 @@ class MovingTopics:
         """Which of the moving transforms follow from known positions."""
         return ~self.frames.depends_on(~self.positions.is_known)
 
-    def rows_from_dofs(self, dofs: Sequence[int]) -> NDArray[np.intp]:
+    def rows_from_dofs(self, dofs: Sequence[int]) -> Rows:
         """Return the moving transforms that some degrees of freedom, or joints at zero, move."""
         is_changed = self.positions.is_known & ~self.positions.is_reported
         is_changed[dofs] = True
         return np.flatnonzero(self.frames.depends_on(is_changed) & self.has_transform)
 
     def stamp(
-        self, rows: NDArray[np.intp], stamp_ns: int, *, ignore_stamps: bool = False,
-    ) -> NDArray[np.intp]:
+        self, rows: Rows, stamp_ns: int, *, ignore_stamps: bool = False,
+    ) -> Rows:
         """
         Give moving transforms a stamp, before they are published or wait for it.
 
@@ -195,7 +195,7 @@ class MovingTopics:
         self._transforms.set_stamps(stamp_ns, rows)
         return rows
 
-    def last_stamps_ns(self, rows: NDArray[np.intp]) -> NDArray[np.int64]:
+    def last_stamps_ns(self, rows: Rows) -> NDArray[np.int64]:
         """Return the last stamp of each of some moving transforms."""
         return self._stamps_ns[rows]
 
@@ -222,7 +222,7 @@ class MovingTopics:
         self.publish_tf(rows)
         return not is_stamped.any()
 
-    def publish_tf(self, rows: NDArray[np.intp]) -> None:
+    def publish_tf(self, rows: Rows) -> None:
         """
         Publish moving transforms in one message on ``/tf``, with their stamps.
 
@@ -286,7 +286,7 @@ def _publish(
             publisher.publish(message)
 
 
-def _records_of_transforms(tree: TfTree, indices: NDArray[np.intp]) -> StampedRecords:
+def _records_of_transforms(tree: TfTree, indices: Rows) -> StampedRecords:
     return StampedRecords(tree.ids_of_transforms(indices), tree.transforms[indices])
 
 

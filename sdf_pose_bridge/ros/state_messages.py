@@ -11,16 +11,17 @@ import time
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from rclpy.node import Node
 from rclpy.subscription import Subscription
 
 from sdf_pose_bridge.geometry.poses import pose_products
+from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.names import scoped_name
-from sdf_pose_bridge.ros.cdr import SerializedNames
+from sdf_pose_bridge.ros.cdr import Rows, SerializedNames
 from sdf_pose_bridge.ros.log_lines import names_in_line, RareWarnings
 from sdf_pose_bridge.ros.message_counts import MessageCounts
 from sdf_pose_bridge.ros.other_publishers import names_of_nodes, publishers_of_topic
+from sdf_pose_bridge.ros.period import NO_ROWS
 from sdf_pose_bridge.ros.published_frames import MovingTopics
 from sdf_pose_bridge.ros.setting_rules import MOST_CHARACTERS
 from sdf_pose_bridge.tf.joint_motion import NO_DOF
@@ -45,7 +46,7 @@ class Effect:
     """The degrees of freedom."""
     names: SerializedNames | None = None
     """The names of joints; None for poses of models."""
-    rows: NDArray[np.intp] = field(default_factory=lambda: np.array([], np.intp))
+    rows: Rows = field(default_factory=lambda: NO_ROWS)
     """The moving transforms to publish."""
     reported_count: int = -1
     """Number of reported degrees of freedom when these were found; -1 if they were not."""
@@ -53,6 +54,8 @@ class Effect:
     """The oldest last stamp of the transforms when a message moved none, as its own is older."""
     late_since: float = 0.0
     """Monotonic time in s since which there have been only such messages and this stamp."""
+    late_line: str = ''
+    """The report about these messages; empty if there is none."""
     counts: MessageCounts = field(default_factory=MessageCounts)
     """The messages, to find several publishers."""
 
@@ -61,7 +64,7 @@ class Message(NamedTuple):
     """The fields of a message that are read, and its effect."""
 
     effect: Effect
-    values: NDArray[np.float64]
+    values: Floats
     """A position for each name; or the poses of models, shape (k, 7)."""
     stamp_ns: int
     """Its stamp in nanoseconds; 0 if it has none."""
@@ -228,7 +231,7 @@ class KnownEffects:
             dof for effect in self._effects.values() if effect.source is not source
             for dof in effect.selection.changed}
 
-    def rows(self, effect: Effect) -> NDArray[np.intp]:
+    def rows(self, effect: Effect) -> Rows:
         """Return the transforms that a message moves, and those of what is where the file is."""
         reported_count = self._positions.reported_count
         if effect.reported_count != reported_count and effect.selection.changed:
@@ -282,7 +285,7 @@ class KnownEffects:
             self._pose_frames[frame_id] = found
         return found
 
-    def values(self, message: Message) -> NDArray[np.float64]:
+    def values(self, message: Message) -> Floats:
         """
         Return the positions, or the poses in the root frame, that a message has.
 

@@ -55,12 +55,6 @@ class StateSources:
         """All sources; those with a subscription come first."""
         return (*self._topics.values(), *([self.simulator] if self.simulator else []))
 
-    @property
-    def wanted_count(self) -> int:
-        """The number of sources that are wanted; any thread may ask for it."""
-        wanted = self._wanted
-        return len(wanted.joint_states) + len(wanted.model_poses) + (self.simulator is not None)
-
     def follow(
         self, topics: StateTopics, settings: Settings, positions: JointPositions,
     ) -> list[StateTopic]:

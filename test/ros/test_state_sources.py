@@ -78,7 +78,6 @@ def test_topics_of_poses_have_the_types_of_their_publishers(sources):
     sources.wait_for(a='PoseStamped')
     sources.publish(Odometry, 'b/pose')
     sources.wait_for(a='PoseStamped', b='Odometry')
-    assert sources.sources.wanted_count == 3
 
 
 def test_a_topic_that_changes_its_type_is_followed_anew(sources, node, other_context):
