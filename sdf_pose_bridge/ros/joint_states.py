@@ -21,15 +21,13 @@ import threading
 import time
 from typing import NamedTuple, TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
 from rclpy.exceptions import InvalidHandle
 from rclpy.node import Node
 from rclpy.task import Future
 
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.ros.background import result_from_executor, result_from_thread, wake
-from sdf_pose_bridge.ros.cdr import NANOSECONDS
+from sdf_pose_bridge.ros.cdr import NANOSECONDS, Rows
 from sdf_pose_bridge.ros.log_lines import text_about_defect
 from sdf_pose_bridge.ros.message_failures import MessageFailures
 from sdf_pose_bridge.ros.message_problems import MessageProblems
@@ -107,7 +105,10 @@ class JointStates:
         self._target = self._next_target = _Target(frames, lookup, (), settings)
         self._calls: deque[Callable[[], object]] = deque()
         self._has_to_end = False
-        self._failures = MessageFailures(self._log_defect, InvalidHandle, MemoryError)
+        self._failures = MessageFailures(
+            lambda: self._logger.error(
+                text_about_defect('joint states'), throttle_duration_sec=60.0),
+            InvalidHandle, MemoryError)
         # The thread alone uses everything else. First, what is due at some monotonic time.
         self._due: dict[Callable[[], None], float] = {}
         self._topics_due = 0.0
@@ -193,9 +194,6 @@ class JointStates:
         self._wait_set.close()
         self._make_calls(len(self._calls))
 
-    def _log_defect(self) -> None:
-        self._logger.error(text_about_defect('joint states'), throttle_duration_sec=60.0)
-
     def _turn(self) -> None:
         """Wait once, and do what is due."""
         with self._node.handle:
@@ -249,11 +247,10 @@ class JointStates:
         self._end_period()
 
     def _start_frames(self) -> None:
-        target = self._target
+        frames, lookup, _, settings = self._target
         self._effects = KnownEffects(
-            target.frames, target.lookup, target.settings.model_pose_frames,
-            target.settings.model_pose_placement)
-        self._problems = MessageProblems(target.frames)
+            frames, lookup, settings.model_pose_frames, settings.model_pose_placement)
+        self._problems = MessageProblems(frames)
         self._period.forget()
         now = time.monotonic()
         self._due[self._publish_all] = self._due[self._publish_at_rest] = now
@@ -292,7 +289,7 @@ class JointStates:
                     return
         self._period.add(self._move_all(newest))
 
-    def _move_all(self, newest: Mapping[Effect, Message]) -> NDArray[np.intp]:
+    def _move_all(self, newest: Mapping[Effect, Message]) -> Rows:
         return union([
             self._failures.attempt([each.effect.source], NO_ROWS, self._move, each)
             for each in newest.values()])
@@ -308,7 +305,7 @@ class JointStates:
             self._target.frames.forget_stamps()
             self._period.forget()
 
-    def _move(self, message: Message) -> NDArray[np.intp]:
+    def _move(self, message: Message) -> Rows:
         target, effect, source = self._target, message.effect, message.effect.source
         positions, ignores_stamps = target.frames.positions, target.settings.ignore_timestamp
         stamp_ns = message.stamp_ns or self._node.get_clock().now().nanoseconds
@@ -330,7 +327,7 @@ class JointStates:
         rows = self._effects.rows(effect)
         if len(rows) and not self._has_moved:
             self._has_moved = True
-            count = self.sources.wanted_count
+            count = len(target.sources)
             self._logger.info(
                 f'following {source.name}' if count == 1 else
                 f'following {count} sources; the first message is on {source.name}')
@@ -343,7 +340,7 @@ class JointStates:
     # Publication
 
     def _publish(
-        self, rows: NDArray[np.intp], awaited: Sequence[StateSource] = (),
+        self, rows: Rows, awaited: Sequence[StateSource] = (),
     ) -> None:
         """
         Publish moving transforms, if any; with a highest rate, a period begins if there is none.

@@ -61,6 +61,11 @@ LARGEST_SHARE = 0.001
 ENTITIES_PERIOD_S = 1.0
 """Shortest period in s of a load because of entities that only the simulator has."""
 
+ALWAYS_LOADED = (
+    'sdf_file', 'robot_description', 'model_pose_topics', 'model_pose_frames',
+    'model_pose_placement', 'simulator')
+"""Parameters with which the file is read again even if the request for the load stays."""
+
 LONGEST_WAIT_S = 0.1
 """Longest time in s for which a call in another process is awaited at once."""
 
@@ -179,9 +184,8 @@ class SdfPoseBridge:
         try:
             settings = changed_settings(self._settings, parameters)
             loaded = self._loaded
-            if settings.needs_load_after(self._settings) or any(
-                    parameter.name in ('sdf_file', 'robot_description')
-                    for parameter in parameters):
+            if settings.load_request != self._settings.load_request or any(
+                    parameter.name in ALWAYS_LOADED for parameter in parameters):
                 loaded = self._load(settings)
             check_number_of_topics(settings, loaded.joint_positions)
             if loaded is not self._loaded or (

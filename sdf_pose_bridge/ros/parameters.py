@@ -55,8 +55,6 @@ class Declaration(Generic[Setting]):
     convert: Callable[[Any], Setting]
     """Makes the setting of a value. If the value is not allowed, it raises ValueError with the
     words that follow "parameter <name>" in a sentence."""
-    needs_load: bool = True
-    """Whether a new setting takes effect only when the file is read again."""
     maximum: float | None = None
     """The largest value of a number; the smallest one is 0.0."""
     is_read_only: bool = False
@@ -78,10 +76,8 @@ class Declaration(Generic[Setting]):
         return setting
 
 
-def _switch(
-    default: bool, description: str, *, needs_load: bool = True,  # noqa: FBT001
-) -> Declaration[bool]:
-    return Declaration(default, description, 'true or false', bool, needs_load)
+def _switch(default: bool, description: str) -> Declaration[bool]:  # noqa: FBT001
+    return Declaration(default, description, 'true or false', bool)
 
 
 def _choice(default: Choice, description: str) -> Declaration[Choice]:
@@ -113,7 +109,7 @@ def _rate(
         return value
 
     return Declaration(
-        default, description, rule, setting, needs_load=False, maximum=highest)
+        default, description, rule, setting, maximum=highest)
 
 
 class Settings:
@@ -139,7 +135,6 @@ class Settings:
     publish_robot_description = _switch(
         True,
         'Publishes the text of a model or URDF on the topic robot_description.',
-        needs_load=False,
     )
     description_format = _choice(
         DescriptionFormat.AS_GIVEN,
@@ -148,15 +143,13 @@ class Settings:
         'frames on TF, and TF also has frames at its joints.',
     )
     publish_transforms = _switch(
-        True, 'Publishes all transforms one by one on ~/transforms.', needs_load=False,
+        True, 'Publishes all transforms one by one on ~/transforms.',
     )
     publish_visuals = _switch(
         True, 'Publishes the shapes of the links on ~/visuals while there is a subscriber.',
-        needs_load=False,
     )
     publish_diagnostics = _switch(
         True, 'Publishes the state of the node and the errors of the last load on /diagnostics.',
-        needs_load=False,
     )
     root_frame = Declaration(
         'world',
@@ -226,7 +219,6 @@ class Settings:
         'none if empty; at most 1000 patterns of at most 255 characters; * alone means none if '
         'there are more than 1000 frames, ?* means all',
         rules.patterns_setting,
-        needs_load=False,
     )
     optical_frames = _switch(
         True,
@@ -247,7 +239,6 @@ class Settings:
         'with {model} or {world} count only for a world; at most 1000 of them, of at most 255 '
         'characters',
         rules.topic_patterns_setting,
-        needs_load=False,
     )
     model_pose_topics = Declaration(
         [],
@@ -286,11 +277,10 @@ class Settings:
     )
     simulator_entity = Declaration(
         rules.MODEL_FIELD, 'The name in the simulator of the model that is {model} in the file.',
-        'the name of an entity, such as /World/{model}', rules.entity_setting, needs_load=False,
+        'the name of an entity, such as /World/{model}', rules.entity_setting,
     )
     simulator_others = _switch(
         False, 'Publishes frames of entities of the simulator that the file does not have.',
-        needs_load=False,
     )
     simulator_rate = _rate(
         'Most calls of the simulator in a second; 0.0 for none.', 'for none', rules.HIGHEST_RATE,
@@ -317,7 +307,6 @@ class Settings:
         False,
         'Publishes for each message on joint_states, even if it has the stamp of the last one, '
         'and independently of publish_frequency.',
-        needs_load=False,
     )
     publish_rate = _rate(
         'Rate in Hz at which the transforms that joints do not move are published again, for '
@@ -327,7 +316,6 @@ class Settings:
     watch = _switch(
         True,
         'Reads the file again when it, or a file that it includes, has changed.',
-        needs_load=False,
     )
     on_missing_include = _choice(
         MissingInclude.ERROR,
@@ -341,7 +329,6 @@ class Settings:
         'frame. Anybody in the domain may call it.',
         'true or false; can be set only at the start',
         bool,
-        needs_load=False,
         is_read_only=True,
     )
 
@@ -363,17 +350,6 @@ class Settings:
         return LoadRequest(
             self.sdf_file, self.robot_description, self.resource_paths, self.on_missing_include,
             self.tf_options, self.unreported_joints, self.description_format, self.model_name)
-
-    def needs_load_after(self, before: Settings) -> bool:
-        """
-        Return whether the file has to be read again.
-
-        :param before: the settings when it was last read.
-        :return: True if a setting has changed that takes effect when the file is read.
-        """
-        return any(
-            declaration.needs_load and self.values[name] != before.values[name]
-            for name, declaration in DECLARATIONS.items())
 
 
 DECLARATIONS: dict[str, Declaration[Any]] = {

@@ -182,7 +182,7 @@ def test_new_values_are_converted_and_the_others_stay(make_node):
 ])
 def test_the_file_is_read_again_where_that_changes_anything(settings, name, value, needs_load):
     changed = changed_settings(settings, [Parameter(name, value=value)])
-    assert changed.needs_load_after(settings) is needs_load
+    assert (changed.load_request != settings.load_request) is needs_load
 
 
 def test_only_the_permission_to_write_files_cannot_be_changed(make_node):
