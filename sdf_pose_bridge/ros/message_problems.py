@@ -84,7 +84,7 @@ class MessageProblems:
         :param effects: those of all messages that are known.
         """
         sources: dict[int, dict[str, StateSource]] = {}
-        found: dict[str, tuple[str, int, StateSource]] = {}
+        found: dict[str, tuple[int, StateSource]] = {}
         lists = Counter(each.source for each in effects if each.counts.messages)
         for effect in effects:
             source, dofs, counts = effect.source, effect.selection.dofs.tolist(), effect.counts
@@ -92,20 +92,20 @@ class MessageProblems:
                 nodes = source.publishers()
                 # Values alone prove little, so each list of names may have its own publisher.
                 if len(nodes) > (lists[source] if counts.number is None else 1):
-                    found[source.name] = f', among {names_in_line(nodes)}', dofs[0], source
+                    found[f'{source.name}, among {names_in_line(nodes)}'] = dofs[0], source
             counts.end_period()
             for dof in dofs if counts.periods > 1 else ():
                 sources.setdefault(dof, {})[source.name] = source
         for dof, by_name in sources.items():
             if len(by_name) > 1:
-                found.setdefault(' and '.join(sorted(by_name)), ('', dof, by_name.popitem()[1]))
+                found.setdefault(' and '.join(sorted(by_name)), (dof, by_name.popitem()[1]))
         self._lines_about_publishers = []
-        for topics, (nodes_of_topic, dof, source) in found.items():
+        for topics, (dof, source) in found.items():
             what, setting = ('model', 'model_pose_topics') if self._positions.is_model(dof) else (
                 'joint', 'joint_states_topics')
             line = (
                 f'messages about {what} {names_in_line([self._positions.names[dof]])} come from '
-                f'several publishers at once on {topics}{nodes_of_topic}; the newest stamp '
-                f'counts, so stop all but one, or leave a topic out of {setting}')
+                f'several publishers at once on {topics}; the newest stamp counts, so stop all '
+                f'but one, or leave a topic out of {setting}')
             self._lines_about_publishers.append(line)
             source.warn_once('publishers', [topics], partial(str, line))

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 import contextlib
 from functools import partial
 import time
@@ -55,10 +55,8 @@ class OtherPublishers:
         """A line for each topic on which another node publishes a frame of this one."""
         self._node = node
         self._subscriptions: dict[Topic, Subscription] = {}
-        # The publishers and the frames of the last look; and for its subscriptions, the names of
-        # the other nodes and the parents of the frames.
+        # The publishers and the frames of the last look, and the parents of the frames.
         self._last: tuple[set[bytes], TfTree] | None = None
-        self._others: dict[Topic, list[str]] = {}
         self._parents: dict[str, str] = {}
         # The parents that other nodes give frames of this one, in the order in which they came.
         self._found: dict[Topic, dict[str, str]] = {}
@@ -89,14 +87,14 @@ class OtherPublishers:
         topics = [TF]
         if self._last == (gids, frames.tree):
             self._read(frames.publishers.static_stamps_ns)
-            self._report(scene)
+            self._report(scene, others)
             self._close(topics)
             if time.monotonic() < self._listens_to_tf_at:
                 return
         else:
             # Listen again, as latched messages may be about other frames of this node.
             topics.append(TF_STATIC)
-            self._last, self._others = (gids, frames.tree), others
+            self._last = gids, frames.tree
             self.problems.clear()
             self._found = {each: {} for each in topics}
             self._close(topics)
@@ -138,13 +136,13 @@ class OtherPublishers:
             if parent and not (other == parent and is_own):
                 self._found[topic].setdefault(child, other)
 
-    def _report(self, scene: Scene) -> None:
-        """Report what was found."""
+    def _report(self, scene: Scene, others: Mapping[Topic, Sequence[str]]) -> None:
+        """Report what was found, with the names of the other nodes."""
         for topic, found in self._found.items():
             keys = {(topic.name, child) for child in found}
             if not found or (topic.name in self.problems and keys <= self._reported):
                 continue
-            (first, other), names = next(iter(found.items())), self._others[topic]
+            (first, other), names = next(iter(found.items())), others[topic]
             in_file = [child for child in found if child in {
                 frame_id for each in scene.sensors.values()
                 for frame_id in (each.frame_id, each.optical_frame_id)}]

@@ -10,6 +10,7 @@ once, moving frames repeatedly, by the thread that follows joint states.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import compress
 
 from geometry_msgs.msg import PoseStamped, TransformStamped
 import numpy as np
@@ -131,7 +132,8 @@ class PublishedFrames:
         """Publish all fixed frames on all other topics."""
         for records, topics in self._fixed:
             records.set_stamps(self.stamp_ns)
-            self.publishers.send(topics, records.messages())
+            for topic, message in zip(topics, records.messages(), strict=True):
+                self.publishers.opened(topic).publish(message)
 
     def publish_fixed_again(self) -> None:
         """Publish all fixed frames on all topics with a new stamp."""
@@ -237,23 +239,26 @@ class MovingTopics:
 
         :param only_listeners: whether to leave out topics without subscribers.
         """
-        publishers = self._wanted([self.transforms_topic], only_listeners=only_listeners)
-        if any(publishers):
+        publisher, = self._wanted([self.transforms_topic], only_listeners=only_listeners)
+        if publisher is not None:
             self._transforms.set_poses(self.frames.transforms(self.positions.values))
             self._transforms.set_stamps(self._stamps(self.frames.last_dofs))
             messages = self._transforms.messages()
             # They may wait to be published on /tf.
             self._transforms.set_stamps(self._stamps_ns)
-            _publish(publishers * len(messages), messages, self.has_transform)
+            for message in compress(messages, self.has_transform):
+                publisher.publish(message)
         publishers = self._wanted(self._posed_topics, only_listeners=only_listeners)
         if any(publishers):
             frames, rows = self.frames, self._posed_rows
             self._poses.set_poses(frames.poses(self.positions.values)[rows])
             self._poses.set_stamps(
                 self._stamps(frames.posed_last_dofs[rows], frames.last_dof_of_pose_frame))
-            _publish(
-                publishers, self._poses.messages(),
-                frames.has_pose(self.positions.is_known)[rows])
+            for publisher, message in compress(
+                    zip(publishers, self._poses.messages(), strict=True),
+                    frames.has_pose(self.positions.is_known)[rows]):
+                if publisher is not None:
+                    publisher.publish(message)
 
     def _wanted(
         self, topics: Sequence[Topic], *, only_listeners: bool,
@@ -276,14 +281,6 @@ class MovingTopics:
         known = np.append(self.positions.stamps_ns, NEVER)
         newest = np.maximum(known[dofs], known[dof_of_reference])
         return np.where(newest == NEVER, self._publishers.now_ns(), newest)
-
-
-def _publish(
-    publishers: Sequence[Publisher | None], messages: Sequence[bytes], is_known: Iterable[bool],
-) -> None:
-    for publisher, message, has_pose in zip(publishers, messages, is_known, strict=True):
-        if publisher is not None and has_pose:
-            publisher.publish(message)
 
 
 def _records_of_transforms(tree: TfTree, indices: Rows) -> StampedRecords:

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
 from typing import NamedTuple
 
 from rclpy.event_handler import PublisherEventCallbacks
@@ -72,16 +72,6 @@ class Publishers:
                 f'{len(self._publishers)} publishers are more than {MOST_PUBLISHERS}, the most '
                 'that was measured over networks; listeners may wait long for their first '
                 'message: choose fewer topics with pose_topics', once=True)
-
-    def send(self, topics: Sequence[Topic], messages: Sequence[bytes]) -> None:
-        """
-        Publish many messages.
-
-        :param topics: the topic of each message.
-        :param messages: serialized messages.
-        """
-        for topic, message in zip(topics, messages, strict=True):
-            self._publishers[topic].publish(message)
 
 
 def new_publisher(node: Node, topic: Topic) -> Publisher:

@@ -57,10 +57,8 @@ MOST_CHARACTERS_OF_SEPARATOR = 8
 
 def root_frame_setting(value: str) -> str:
     """Reject texts that are no frame id of the root."""
-    if not value:
-        raise refusal(value, 'a frame id, which is not empty')
-    if value.startswith('/'):
-        raise refusal(value, 'without a leading slash, which TF does not allow')
+    if not value or value.startswith('/'):
+        raise refusal(value, 'a frame id, not empty and without a leading slash')
     return _name_setting(value, MOST_CHARACTERS)
 
 
@@ -78,16 +76,14 @@ def separator_setting(value: str) -> str:
 
 def kinds_setting(values: Sequence[str]) -> frozenset[Kind] | None:
     """Return the kinds of elements by their names; None for ``auto`` alone."""
-    known = ', '.join(PUBLISHED_KINDS)
     if list(values) == [AUTO_KINDS]:
         return None
-    if AUTO_KINDS in values:
-        raise refusal(list(values), f'"{AUTO_KINDS}" alone, or made of {known}')
+    rule = f'"{AUTO_KINDS}" alone, or made of {", ".join(PUBLISHED_KINDS)}'
     if not values:
-        raise refusal([], f'at least one of {known}')
+        raise refusal([], rule)
     for value in values:
         if value not in PUBLISHED_KINDS:
-            raise refusal(value, f'made of {known}{hint_from_names(value, PUBLISHED_KINDS)}')
+            raise refusal(value, f'{rule}{hint_from_names(value, PUBLISHED_KINDS)}')
     return frozenset(PUBLISHED_KINDS[value] for value in values)
 
 

@@ -253,10 +253,10 @@ class Simulator(StateSource):
         """Add nested models without a pose, which keep their places; note what else is missing."""
         positions, kept = self._positions, []
         stamp_ns = max((each.stamp_ns for each in poses.values()), default=0)
-        missing = [each for each in positions.free_models if each not in poses]
-        if missing:
-            given = effects.dofs_of_others(self)
-            missing = [each for each in missing if effects.models.get(each) not in given]
+        given = effects.dofs_of_others(self)
+        missing = [
+            each for each in positions.free_models
+            if each not in poses and effects.models.get(each) not in given]
         for model in missing:
             outer, place = positions.nested_models.get(model, ('', Pose()))
             if outer in poses or (outer and outer not in positions.free_models):

@@ -84,11 +84,12 @@ class StateTopic(StateSource):
         return Message(effect, positions, stamp_ns)
 
     def _poses(self, data: bytes, pose_type: PoseType, effects: KnownEffects) -> Sequence[Message]:
-        poses = poses_from_bytes(data, pose_type)
-        if pose_type.is_sequence:
-            return messages_from_poses(poses, self, effects, None, effects.placements)
-        dof = effects.models.get(self.model) if self.model else effects.only_model
-        if dof is None:
-            msg = 'no single model is meant; {model} in its entry of model_pose_topics names one'
-            raise ValueError(msg)
-        return messages_from_poses(poses, self, effects, dof, effects.placements)
+        dof = None
+        if not pose_type.is_sequence:
+            dof = effects.models.get(self.model) if self.model else effects.only_model
+            if dof is None:
+                msg = ('no single model is meant; {model} in its entry of model_pose_topics '
+                       'names one')
+                raise ValueError(msg)
+        return messages_from_poses(
+            poses_from_bytes(data, pose_type), self, effects, dof, effects.placements)

@@ -139,7 +139,8 @@ def topics_from_patterns(
         world. Without a world, patterns with them name no topic.
     :return: the model of each topic, and the warnings, as in :class:`StateTopics`.
     """
-    places: dict[str, list[tuple[str, str]]] = {}
+    # By the full name of each topic: its models, and the name for each of them.
+    places: dict[str, dict[str, str]] = {}
     for pattern in dict.fromkeys(patterns):
         if WORLD_FIELD in pattern and not world:
             continue
@@ -147,21 +148,20 @@ def topics_from_patterns(
             frame_id = model.replace(SEPARATOR, '/')
             name = pattern.replace(MODEL_FIELD, topic_name_from_frame_id(frame_id)).replace(
                 WORLD_FIELD, topic_name_from_frame_id(world))
-            places.setdefault(full_name(name), []).append((name, model))
-    topics, too_long, warnings = {}, [], []
-    for full, found in places.items():
-        name, model = found[0]
-        owners = dict.fromkeys(owner for _, owner in found)
-        if len(owners) > 1:
+            places.setdefault(full_name(name), {}).setdefault(model, name)
+    topics, too_long, warnings = {}, list[str](), []
+    for full, names in places.items():
+        model, name = next(iter(names.items()))
+        if len(names) > 1:
             warnings.append(
                 f'{parameter} has {full} for '
-                f'{names_in_line([each or "all models" for each in owners])}, so messages on it '
+                f'{names_in_line([each or "all models" for each in names])}, so messages on it '
                 'can be about all models')
             model = ''
         if len(full) <= LONGEST_FULL_NAME:
             topics[name] = model
         else:
-            too_long += [owner for _, owner in found]
+            too_long += names
     if too_long:
         warnings.insert(
             0, f'{parameter} has no topic for {names_in_line(too_long)}: its name would be longer '

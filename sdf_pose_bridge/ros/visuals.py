@@ -60,6 +60,8 @@ class VisualPublisher:
 
     def _publishing(self, loaded: LoadedScene) -> Generator[float, None, None]:
         """Publish the visuals of a scene; yield while another process makes them."""
+        reasons = [
+            f'a file that {line_from_text(loaded.path)} includes has changed since it was read']
         try:
             with self._reader.calling(
                     loaded.request, serialized_markers_from_text, loaded.text, loaded.path,
@@ -69,17 +71,12 @@ class VisualPublisher:
                     yield WAITING_S
                 found = call.result()
         except SdfError as error:
-            self._warn(lines_from_error(error))
-            return
+            found, reasons = None, lines_from_error(error)
         if found is None:
-            self._warn([
-                f'a file that {loaded.path} includes has changed since it was read'])
+            for reason in reasons:
+                self._logger.warning(f'~/visuals is not updated: {reason}')
             return
         message, warnings = found
         for line in lines_from_warnings(warnings):
             self._logger.warning(line)
         self._publisher.publish(message)
-
-    def _warn(self, reasons: list[str]) -> None:
-        for reason in reasons:
-            self._logger.warning(f'~/visuals is not updated: {line_from_text(reason)}')

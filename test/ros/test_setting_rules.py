@@ -20,7 +20,7 @@ PUBLISH_FREQUENCY = DECLARATIONS['publish_frequency'].convert
 
 @pytest.mark.parametrize(('rule', 'value', 'words'), [
     (rules.root_frame_setting, '', 'is ""; it must be a frame id'),
-    (rules.root_frame_setting, '/map', 'is "/map"; it must be without a leading slash'),
+    (rules.root_frame_setting, '/map', 'is "/map"; it must be a frame id, not empty and without'),
     (rules.root_frame_setting, 'ma\np', 'it must be without control characters'),
     (rules.prefix_setting, 'r\x001', 'it must be without control characters'),
     (rules.separator_setting, '', 'is ""; it must be at least one character'),
@@ -34,9 +34,9 @@ PUBLISH_FREQUENCY = DECLARATIONS['publish_frequency'].convert
     (rules.anchors_setting, '', 'is ""; it must be one of '),
     (rules.anchors_setting, 'all,fence', 'none of which is empty or auto, all or none'),
     (rules.anchors_setting, ',' * 1000, 'has 1001 patterns; it must have at most 1000'),
-    (rules.kinds_setting, [], 'is []; it must be at least one of model, '),
-    (rules.kinds_setting, ['auto', 'link'], 'it must be "auto" alone, or made of model, '),
-    (rules.kinds_setting, ['link', 'links'], 'is "links"; it must be made of model, '),
+    (rules.kinds_setting, [], 'is []; it must be "auto" alone, or made of model, '),
+    (rules.kinds_setting, ['auto', 'link'], 'is "auto"; it must be "auto" alone, or made of '),
+    (rules.kinds_setting, ['link', 'links'], '; did you mean "link"?'),
     (rules.patterns_setting, ['a'] * 1001, 'has 1001 patterns; it must have at most 1000'),
     (rules.topic_patterns_setting, [], 'is []; it must be at least one name of a topic'),
     (rules.topic_patterns_setting, ['a/{robot}'],
