@@ -82,10 +82,6 @@ class Periodic:
 
     def __init__(self, function: Callable[[], None], period_s: float) -> None:
         self._function = function
-        self.restart(period_s)
-
-    def restart(self, period_s: float) -> None:
-        """Begin a period of another length."""
         self.period_s = period_s
         self._due = time.monotonic() + period_s
 

@@ -151,18 +151,17 @@ def warnings_about_unknown_parameters(
     :param known_elsewhere: names of parameters of other nodes, which cause no warning. If there
         are any, names that resemble no name of a parameter are left out, too.
     """
-    given = _given_parameters(node)
-    hints = {
-        name: hint_from_names(name, DECLARATIONS) for name in given
-        if name not in DECLARATIONS and not node.has_parameter(name)
-        and not name.startswith(QOS_OVERRIDES) and name not in known_elsewhere
-        and not _reason_without_effect(name)}
-    return [
-        f'there is no parameter "{name}", so it has no effect{hint}'
-        for name, hint in hints.items() if hint or not known_elsewhere
-    ] + [
-        f'parameter {name} has no effect here; {reason}'
-        for name in given if (reason := _reason_without_effect(name))]
+    warnings = []
+    for name in _given_parameters(node):
+        reason = _reason_without_effect(name)
+        if reason:
+            warnings.append(f'parameter {name} has no effect here; {reason}')
+        elif not (name in DECLARATIONS or node.has_parameter(name)
+                  or name.startswith(QOS_OVERRIDES) or name in known_elsewhere):
+            hint = hint_from_names(name, DECLARATIONS)
+            if hint or not known_elsewhere:
+                warnings.append(f'there is no parameter "{name}", so it has no effect{hint}')
+    return warnings
 
 
 def _reason_without_effect(name: str) -> str:

@@ -103,8 +103,7 @@ class SdfPoseBridge:
         self._has_told_of_joints = False
         self._follower = FileFollower(loaded)
         # Simulated time may stand still, so these follow the time of the computer.
-        self._publishing_again = Periodic(
-            self._publish_again, _period_from_rate(settings.publish_rate))
+        self._publishing_again = self._periodic_publication(settings)
         self._publishing_diagnostics = Periodic(self._diagnostics.publish, PERIOD_S)
         self._looking = Periodic(self._look_at_files, LOOKING_PERIOD_S)
         self._looking_for_others = Periodic(
@@ -239,6 +238,10 @@ class SdfPoseBridge:
             self._following_entities.period_s = max(
                 ENTITIES_PERIOD_S, 10.0 * (time.monotonic() - begin))
 
+    def _periodic_publication(self, settings: Settings) -> Periodic:
+        rate = settings.publish_rate
+        return Periodic(self._publish_again, 1.0 / rate if rate else math.inf)
+
     def _publish_again(self) -> None:
         begin = time.perf_counter()
         self._frames.publish_fixed_again()
@@ -347,7 +350,7 @@ class SdfPoseBridge:
     ) -> None:
         before, self._settings = self._settings, settings
         if settings.publish_rate != before.publish_rate:
-            self._publishing_again.restart(_period_from_rate(settings.publish_rate))
+            self._publishing_again = self._periodic_publication(settings)
         if frames is not None:
             self._replace(loaded, frames)
         else:
@@ -394,7 +397,3 @@ class SdfPoseBridge:
             for line in lines:
                 self._logger.error(line)
             self._diagnostics.update(self._loaded, lines)
-
-
-def _period_from_rate(rate: float) -> float:
-    return 1.0 / rate if rate else math.inf

@@ -104,12 +104,12 @@ def answer_to_convert_rotation(
     request: ConvertRotation.Request, response: ConvertRotation.Response,
 ) -> None:
     """Convert one rotation, unless a value is in the field that would be ignored."""
-    angles = ROTATION_FORMATS['rpy_degrees' if request.degrees else 'rpy']
-    fields = {
-        ConvertRotation.Request.RPY: ('rpy', angles, _numbers(request.rpy, 'xyz')),
-        ConvertRotation.Request.QUATERNION: (
-            'quaternion', ROTATION_FORMATS['quaternion'], _numbers(request.quaternion, 'xyzw'))}
-    if request.given not in fields:
+    angles = 'rpy_degrees' if request.degrees else 'rpy'
+    # In the order of the constants RPY and QUATERNION.
+    fields = (
+        ('rpy', angles, _numbers(request.rpy, 'xyz')),
+        ('quaternion', 'quaternion', _numbers(request.quaternion, 'xyzw')))
+    if request.given >= len(fields):
         msg = f'given is {request.given}, and must be 0 (RPY) or 1 (QUATERNION)'
         raise RotationError(msg)
     name, source, values = fields[request.given]
@@ -122,7 +122,7 @@ def answer_to_convert_rotation(
     _fill(response.rpy, converted_rotations(values, source, angles).tolist())
     _fill(response.quaternion, quat)
     response.gimbal_lock = near_gimbal_lock(quat)
-    if doubt := source.doubt(values):
+    if doubt := ROTATION_FORMATS[source].doubt(values):
         response.message = doubt.question()
 
 
