@@ -68,25 +68,21 @@ def add_services(node: Node, lookup: Callable[[], Awaitable[PoseLookup]]) -> Non
     """
     # It answers requests that may take long, one after the other.
     worker = Worker(node, 'conversions')
-
     answered = partial(response_from_answer, log_error=node.get_logger().error)
 
-    async def answered_in_thread(*call: Any) -> Any:
-        return await worker.run(partial(answered, *call))
-
     async def convert_poses(request: ConvertPoses.Request, response: ConvertPoses.Response) -> Any:
-        if len(request.values) <= FEW_NUMBERS:
-            return answered(answer_to_convert_poses, request, response)
-        return await answered_in_thread(answer_to_convert_poses, request, response)
+        answer = partial(answered, answer_to_convert_poses, request, response)
+        return answer() if len(request.values) <= FEW_NUMBERS else await worker.run(answer)
 
     async def lookup_pose(request: LookupPose.Request, response: LookupPose.Response) -> Any:
         current = await lookup()
-        answer = partial(answer_to_lookup_pose, lookup=current, clock=node.get_clock())
-        if current.knows(request.frame) and (
-                not request.relative_to or current.knows(request.relative_to)):
-            return answered(answer, request, response)
+        answer = partial(
+            answered, partial(answer_to_lookup_pose, lookup=current, clock=node.get_clock()),
+            request, response)
+        is_known = current.knows(request.frame) and (
+            not request.relative_to or current.knows(request.relative_to))
         # Finding the nearest name takes long if there are many.
-        return await answered_in_thread(answer, request, response)
+        return answer() if is_known else await worker.run(answer)
 
     for service_type, name, callback in (
         (ConvertRotation, 'convert_rotation', partial(answered, answer_to_convert_rotation)),
