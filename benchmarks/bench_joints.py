@@ -125,10 +125,11 @@ class JointBroadcaster:
 def transforms_of_100_joints() -> Iterator[tuple[Function, Function | None]]:
     from rclpy.serialization import serialize_message
 
+    from sdf_pose_bridge.ros.cdr import JOINT_STATE
     from sdf_pose_bridge.ros.published_frames import PublishedFrames
     from sdf_pose_bridge.ros.publishers import Publishers
     from sdf_pose_bridge.ros.state_messages import KnownEffects
-    from sdf_pose_bridge.ros.state_topic import JOINT_STATE, StateTopic, TopicKey
+    from sdf_pose_bridge.ros.state_topic import StateTopic, TopicKey
     from sdf_pose_bridge.tf.lookup import PoseLookup
     with node() as ros:
         scene = sdf_pose_bridge.load_text(chain_text(100))
