@@ -71,8 +71,8 @@ def use_profile(environment: MutableMapping[str, str]) -> str:
             reason = 'the package is not installed'
         else:
             environment[profile.variable] = path
-            other = [f', or {each} to an empty string to use none'
-                     for each in variables if each != profile.variable]
+            other = next((f', or {each} to an empty string to use none'
+                          for each in variables if each != profile.variable), '')
             return (f'the middleware profile {path} is used; set {profile.variable} to use your '
-                    f'own{"".join(other[:1])}')
+                    f'own{other}')
     return f'no middleware profile of this package is used: {reason}'

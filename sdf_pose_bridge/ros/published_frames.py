@@ -239,7 +239,7 @@ class MovingTopics:
 
         :param only_listeners: whether to leave out topics without subscribers.
         """
-        publisher, = self._wanted([self.transforms_topic], only_listeners=only_listeners)
+        publisher = self._wanted(self.transforms_topic, only_listeners=only_listeners)
         if publisher is not None:
             self._transforms.set_poses(self.frames.transforms(self.positions.values))
             self._transforms.set_stamps(self._stamps(self.frames.last_dofs))
@@ -248,7 +248,8 @@ class MovingTopics:
             self._transforms.set_stamps(self._stamps_ns)
             for message in compress(messages, self.has_transform):
                 publisher.publish(message)
-        publishers = self._wanted(self._posed_topics, only_listeners=only_listeners)
+        publishers = [
+            self._wanted(each, only_listeners=only_listeners) for each in self._posed_topics]
         if any(publishers):
             frames, rows = self.frames, self._posed_rows
             self._poses.set_poses(frames.poses(self.positions.values)[rows])
@@ -260,14 +261,10 @@ class MovingTopics:
                 if publisher is not None:
                     publisher.publish(message)
 
-    def _wanted(
-        self, topics: Sequence[Topic], *, only_listeners: bool,
-    ) -> list[Publisher | None]:
-        """Return the publisher of each topic, or None if nothing is to be published there."""
-        found = map(self._publishers.existing, topics)
-        return [
-            each if each and (not only_listeners or each.get_subscription_count()) else None
-            for each in found]
+    def _wanted(self, topic: Topic, *, only_listeners: bool) -> Publisher | None:
+        """Return the publisher of a topic, or None if nothing is to be published there."""
+        found = self._publishers.existing(topic)
+        return found if found and (not only_listeners or found.get_subscription_count()) else None
 
     def _stamps(self, dofs: Indices, dof_of_reference: int = NO_DOF) -> NDArray[np.int64]:
         """
