@@ -59,18 +59,17 @@ def test_a_static_model_does_not_move():
     assert not motion_of(text)[1].dofs
 
 
-def test_a_joint_moves_the_link_of_its_parent_frame_backwards():
-    text = model_file(
-        '<link name="a"/><link name="b"/><frame name="f" attached_to="b"/>' + joint(
-            '<parent>f</parent><child>a</child><axis><xyz>1 0 0</xyz></axis>', 'j', 'prismatic'))
-    assert_same_pose(poses_at(text, {'j': 2.0})['m::b'], matrix_from_degrees(-2, 0, 0))
+SLIDING = '<parent>{}</parent><child>{}</child><axis><xyz>1 0 0</xyz></axis>'
 
 
-def test_a_joint_of_the_world_moves_a_model():
-    text = world_file(
-        '<model name="m"><link name="l"/></model><joint name="j" type="prismatic">'
-        '<parent>world</parent><child>m</child><axis><xyz>1 0 0</xyz></axis></joint>')
-    assert_same_pose(poses_at(text, {'j': 2.0})['m'], matrix_from_degrees(2, 0, 0))
+@pytest.mark.parametrize(('text', 'name', 'x'), [
+    (model_file('<link name="a"/><link name="b"/><frame name="f" attached_to="b"/>' + joint(
+        SLIDING.format('f', 'a'), 'j', 'prismatic')), 'm::b', -2.0),
+    (world_file('<model name="m"><link name="l"/></model>' + joint(
+        SLIDING.format('world', 'm'), 'j', 'prismatic')), 'm', 2.0),
+], ids=['the link of its parent frame backwards', 'a model'])
+def test_a_joint_moves(text, name, x):
+    assert_same_pose(poses_at(text, {'j': 2.0})[name], matrix_from_degrees(x, 0, 0))
 
 
 def test_the_last_joint_of_a_loop_moves_nothing():

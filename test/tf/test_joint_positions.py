@@ -68,25 +68,16 @@ def test_unknown_names(name):
     assert not len(positions.selection([name]).dofs)
 
 
-@pytest.mark.parametrize('name', ['j', 'm/j', 'm::j'])
-def test_names_of_a_joint_of_a_model_file(name):
-    positions = positions_of(model_file(LINKS + joint(ENDS, 'j', 'revolute')))
-    assert positions.names == ('j',)
-    assert positions.selection([name]).dofs.tolist() == [0]
-
-
-def test_a_joint_that_is_renamed_keeps_its_own_name_too():
-    joints = joint(ENDS, 'b', 'revolute') + joint(
-        '<parent>b</parent><child>c</child>', 'k_joint', 'revolute')
-    positions = positions_of(model_file(LINKS + joints, version='1.6'))
-    assert positions.selection(['b_joint', 'b', 'k_joint', 'k']).dofs.tolist() == [0, 0, 1]
-
-
-def test_names_of_joints_in_a_world_are_scoped():
-    positions = positions_of(world_file(model('x') + model('y')))
-    assert positions.names == ('x/j', 'y/j')
-    assert positions.selection(['y::j', 'y/j']).dofs.tolist() == [1, 1]
-    assert positions.unknown(['j']) == ['j']
+@pytest.mark.parametrize(('text', 'only_model', 'names', 'dofs'), [
+    (model_file(LINKS + joint(ENDS, 'j', 'revolute')), '', ['j', 'm/j', 'm::j'], [0, 0, 0]),
+    (world_file(model('x') + model('y')), '', ['y::j', 'j', 'y/j'], [1, 1]),
+    (world_file(model('x') + model('y') + model('yy')), 'y', ['j', 'x/j'], [1]),
+    (model_file(LINKS + joint(ENDS, 'b', 'revolute') + joint(
+        '<parent>b</parent><child>c</child>', 'k_joint', 'revolute'), version='1.6'),
+     '', ['b_joint', 'b', 'k_joint', 'k'], [0, 0, 1]),
+], ids=['of a model file', 'of a world', 'of one of several models', 'of a joint that is renamed'])
+def test_names(text, only_model, names, dofs):
+    assert positions_of(text, only_model).selection(names).dofs.tolist() == dofs
 
 
 def test_names_inside_one_model_are_not_those_of_others():
@@ -141,12 +132,6 @@ def test_the_name_of_a_joint_itself_comes_first():
     positions = positions_of(text)
     assert positions.selection(['j', 'n/j']).dofs.tolist() == [
         positions.names.index('j'), positions.names.index('n/j')]
-
-
-def test_of_several_models_one_can_have_all_names():
-    positions = positions_of(world_file(model('x') + model('y') + model('yy')), model='y')
-    assert positions.selection(['j']).dofs.tolist() == [1]
-    assert positions.unknown(['x/j']) == ['x/j']
 
 
 def test_names_of_a_second_axis_and_of_a_ball_joint():
