@@ -98,7 +98,7 @@ class Tab:
 def _tab(browser, name):
     client = pytest.importorskip('websockets.sync.client', reason='needs websockets')
     with client.connect(f'ws://{browser}/devtools/page/{name}', max_size=None,
-                        ping_interval=None) as socket:
+                        open_timeout=DEADLINE_S, ping_interval=None) as socket:
         yield Tab(socket, browser)
 
 

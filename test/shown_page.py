@@ -133,8 +133,10 @@ def press(page, text):
 def drag(page):
     """Drag the gizmo of the frame with the hostile name upwards, 11 pixels beside its arrow."""
     wait_until_movable(page)
-    # Nothing says when the gizmo is drawn; until then there is nothing to drag.
-    page.run('new Promise(drawn => requestAnimationFrame(() => requestIdleCallback(drawn)))')
+    # Nothing says when the gizmo is drawn; until then there is nothing to drag. A page that always
+    # draws, as it cannot keep up, is never idle.
+    page.run('new Promise(drawn => requestAnimationFrame('
+             '() => requestIdleCallback(drawn, {timeout: 5000})))')
     points = (point_on_screen(page, (1.0, 0.0, height)) for height in (0.0, 0.02, 0.05, 0.08, 0.1))
     # The arrow is 8 pixels further right there.
     page.mouse(*((x + 8 - 11, y - 70) for x, y in points))

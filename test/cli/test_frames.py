@@ -20,7 +20,10 @@ def test_lines_are_as_long_as_those_of_the_terminal(on_terminal, files, columns,
     moved = files / 'moved.sdf'
     moved.write_text(cell.read_text().replace('<pose>-1.2 -1.5 0', '<pose>-1.2 -1.6 0'))
     text = on_terminal(columns, *(each.format(cell=cell, moved=moved) for each in arguments))
-    lines = re.sub('\x1b\\[[0-9]*m', '', text).splitlines()
+    lines = [
+        line for line in re.sub('\x1b\\[[0-9]*m', '', text).splitlines()
+        # Where reading takes long, this says so, with a path that may be long.
+        if not line.startswith('reading ')]
     assert len(lines) > 2
     assert max(map(len, lines)) <= columns
 
