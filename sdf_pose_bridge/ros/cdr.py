@@ -51,7 +51,7 @@ MOST_BYTES = 1_000_000
 """Largest size of a message that is read; other callbacks wait meanwhile."""
 
 LONGEST_READ_S = 1.0 / 30.0
-"""Longest time in s to read messages at once, for the same reason."""
+"""Longest processor time in s to read messages at once, for the same reason."""
 
 _START = 4
 """Offset of the fields in a message, from which alignment is counted."""

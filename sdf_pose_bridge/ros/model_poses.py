@@ -41,7 +41,7 @@ def messages_from_poses(
     groups: dict[tuple[int, str, str], dict[int, Sequence[float]]] = {}
     unknown, others, carried = list[str](), list[str](), dict[int, str]()
     invalid = list[tuple[float, ...]]()
-    ends_at = time.monotonic() + LONGEST_READ_S
+    ends_at = time.thread_time() + LONGEST_READ_S
     for stamp_ns, frame_id, child, numbers in poses:
         model, placed = effects.placed_frame(child, dof)
         if model is None:

@@ -35,7 +35,7 @@ _MOST_WAITING = 100
 """Largest number of messages that wait in a subscription, those of this node included; then new
 ones replace the oldest."""
 
-_MOST_BYTES_READ = 3 * MOST_BYTES
+_MOST_BYTES_READ = 2 * MOST_BYTES
 """Number of bytes after which a look reads no more messages, as the loader waits meanwhile; a
 megabyte takes about 0.04 s."""
 

@@ -266,13 +266,13 @@ class KnownEffects:
         """
         Look up a frame id in the header of a pose, and keep what is found.
 
-        :param ends_at: the monotonic time in s from which nothing is looked up.
+        :param ends_at: the processor time of this thread in s from which nothing is looked up.
         :param source: logs that a pattern makes it the root frame, if this is the first one.
         :return: the name of the frame, which is empty for the root frame, or None if there is no
             such frame; and its :meth:`PoseLookup.first_dof`. None if it was not looked up.
         """
         found = self._pose_frames.get(frame_id)
-        if found is None and time.monotonic() < ends_at:
+        if found is None and time.thread_time() < ends_at:
             name = frame_id if self.lookup.knows(frame_id) else None
             if frame_id in self._roots:
                 name = ''

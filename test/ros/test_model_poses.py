@@ -157,7 +157,7 @@ def test_frame_ids_are_looked_up_once_and_for_a_limited_time_in_a_message(models
         looked_up.append(name)
         return name == 'p/fixed/l'
 
-    monkeypatch.setattr('time.monotonic', lambda: now)
+    monkeypatch.setattr('time.thread_time', lambda: now)
     models.effects.lookup.knows = knows
     frame_ids = [*'abcdefg', 'p/fixed/l']
     poses = [StampedPose(5, each, 'a', TURNED) for each in frame_ids]
