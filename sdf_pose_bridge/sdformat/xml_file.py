@@ -23,7 +23,6 @@ from xml.parsers import expat
 
 from lxml import etree
 import numpy as np
-from numpy.typing import NDArray
 
 from sdf_pose_bridge.errors import (
     FileReadError,
@@ -303,14 +302,17 @@ def _lines_and_warnings(
     root: XmlElement, text: bytes, path: str,
 ) -> tuple[dict[XmlElement, int], list[SdfWarning]]:
     """Return lines that libxml2 has not, and warnings about names with a line break or a tab."""
+    # Without comments and the like, each "<" is a tag.
+    tags_and_texts = _OTHER_PART.sub(lambda part: b'\n' * part[0].count(b'\n'), text)
     # Most texts have no such tag, which this finds in a fraction of the time of the search.
-    rest = _OTHER_PART.sub(b'', text).translate(None, _NOT_TAGS_AND_BREAKS)
+    rest = tags_and_texts.translate(None, _NOT_TAGS_AND_BREAKS)
     # A value may contain ">" before the break.
     has_break = b'<\n' in rest or b'<\t' in rest or rest.count(b'<') != rest.count(b'>')
     if not has_break and text.count(b'\n') < _LAST_LINE:
         return {}, []
-    begins = _begins_of_elements(text)
-    breaks = np.flatnonzero(np.frombuffer(text, np.uint8) == ord('\n'))
+    characters = np.frombuffer(tags_and_texts + b'/', np.uint8)
+    begins = np.flatnonzero((characters[:-1] == ord('<')) & (characters[1:] != ord('/')))
+    breaks = np.flatnonzero(characters == ord('\n'))
     in_order = np.searchsorted(breaks, begins) + 1
     first = 0 if has_break else int(np.searchsorted(in_order, _LAST_LINE))
     # Nothing after the outermost element belongs to the tree.
@@ -327,17 +329,3 @@ def _lines_and_warnings(
                    'keeps it, so names differ there')
             warnings.append(SdfWarning('WARNING', shortened_message(msg), Place(path, line)))
     return lines, warnings
-
-
-def _begins_of_elements(text: bytes) -> NDArray[np.intp]:
-    """Return the offsets of all start tags, without those in comments and the like."""
-    characters = np.frombuffer(text + b'/', np.uint8)
-    begins = np.flatnonzero(characters == ord('<'))
-    second = characters[begins + 1]
-    ends, end = np.zeros_like(begins), 0
-    for row in np.flatnonzero((second == ord('!')) | (second == ord('?'))).tolist():
-        other = None if begins[row] < end else _OTHER_PART.match(text, begins[row])
-        ends[row] = end = end if other is None else other.end()
-    begins_of_elements: NDArray[np.intp] = begins[
-        (second != ord('/')) & (np.maximum.accumulate(ends) <= begins)]
-    return begins_of_elements
