@@ -163,7 +163,7 @@ class Elements:
 class ElementsBuilder:
     """The table while it grows."""
 
-    def __init__(self, paths: Sequence[str], *, has_shapes: bool = False) -> None:
+    def __init__(self, paths: Sequence[str], *, has_shapes: bool) -> None:
         self._has_shapes = has_shapes
         self.kinds = array('B')
         self.names: list[str] = []

@@ -282,11 +282,12 @@ class _Changer:
         if name is None and first is not None and first.get('name') is not None:
             self._sources.warning(xml, f'<{tag}> has no name; {_start_tag(first)} is taken')
         found = first if name is None else self._ids.child(parent, tag, name)
-        if found is not None or (takes_first and first is not None):
-            return found if found is not None else first
-        msg = f'{_start_tag(parent)} of the included model has no {_start_tag(xml)}'
-        self._error(ElementMissingError, xml, msg)
-        return None
+        if found is None and takes_first:
+            found = first
+        if found is None:
+            msg = f'{_start_tag(parent)} of the included model has no {_start_tag(xml)}'
+            self._error(ElementMissingError, xml, msg)
+        return found
 
     # Errors
 
