@@ -33,7 +33,7 @@ def test_name_stays_at_its_frame(page):
           && Math.hypot(box.left - {x}, box.top - {y}) < 2)(label.getBoundingClientRect()))""")
 
 
-def test_names_do_not_overlap(tab, tmp_path):
+def test_written_page_has_names_that_do_not_overlap_and_asks_for_nothing(tab, tmp_path):
     # From the camera, the last one is a little further, and further right.
     long = 40 * 'a'
     points = {**{f'p{number}': (0.0, 0.0, 2.0) for number in range(6)},
@@ -42,12 +42,16 @@ def test_names_do_not_overlap(tab, tmp_path):
                      for name, point in points.items())
     (tmp_path / 'cell.sdf').write_text(
         f'<sdf version="1.11"><world name="w">{frames}</world></sdf>')
-    run_view(tmp_path, 'cell.sdf', '-o', 'page.html').communicate(timeout=DEADLINE_S)
+    process = run_view(tmp_path, 'cell.sdf', '-o', 'page.html')
+    assert process.communicate(timeout=DEADLINE_S) == ('', '')
     tab.size(1366, 768)
     tab.open((tmp_path / 'page.html').as_uri())
     tab.wait_for(f'{LABELS}.length')
     texts = tab.run(f'{LABELS}.map(label => label.innerText)')
     assert sorted(texts) == sorted(['p0\np1\np2\np3\nand 2 more', long])
+    assert tab.run('document.title') == 'cell.sdf'
+    assert [request for request in tab.requests
+            if not re.match('file:|data:|blob:|about:', request)] == []
 
 
 def test_names_of_frames_are_switched_on(page):
@@ -126,15 +130,15 @@ LABELS_ARE_WHOLE = """[...document.querySelectorAll('p > label')].every(label =>
 })"""
 
 
-@pytest.mark.parametrize('size', [(1366, 768), (800, 600)])
-def test_labels_are_whole_in_a_panel_that_leaves_room_to_the_scene(tab, shown, size):
+def test_labels_are_whole_in_a_panel_that_leaves_room_to_the_scene(page, tab, shown):
     name = 'left_outer_finger_joint_of_the_gripper'
     shown.file.write_text(TEXT.replace('"rail"', f'"{name}"'))
-    tab.size(*size)
+    tab.size(800, 600)
     tab.open(shown.address)
-    tab.wait_for(control(name))
-    tab.wait_for(LABELS_ARE_WHOLE)
-    tab.wait_for("document.querySelector('canvas').clientWidth >= 0.64 * innerWidth")
+    for each in (page, tab):
+        each.wait_for(control(name))
+        each.wait_for(LABELS_ARE_WHOLE)
+        each.wait_for("document.querySelector('canvas').clientWidth >= 0.64 * innerWidth")
 
 
 @pytest.mark.parametrize(('has_secret', 'origin'), [
@@ -151,16 +155,10 @@ def test_nobody_else_may_connect(shown, has_secret, origin):
             subprotocols=[f'viser-v{viser.__version__}'])
 
 
-def test_written_page_and_picture(tab, shown, tmp_path):
+def test_picture(tmp_path):
     (tmp_path / 'cell.sdf').write_text(TEXT)
-    for name in ('page.html', 'picture.png'):
-        process = run_view(tmp_path, 'cell.sdf', '-o', name)
-        assert process.communicate(timeout=DEADLINE_S) == ('', '')
-    tab.open((tmp_path / 'page.html').as_uri())
-    tab.wait_for("document.querySelector('canvas')")
-    assert tab.run('document.title') == 'cell.sdf'
-    assert [request for request in tab.requests
-            if not re.match('file:|data:|blob:|about:', request)] == []
+    process = run_view(tmp_path, 'cell.sdf', '-o', 'picture.png')
+    assert process.communicate(timeout=DEADLINE_S) == ('', '')
     imageio = pytest.importorskip('imageio.v3')
     pixels = imageio.imread(tmp_path / 'picture.png').astype(int)
     assert pixels.shape == (1000, 1600, 3)
