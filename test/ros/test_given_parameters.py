@@ -34,12 +34,21 @@ from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.tree import TfOptions
 
 TYPE = Parameter.Type
-FILE = ('-p', 'sdf_file:=cell.sdf')
+
+
+@pytest.fixture
+def given(make_node):
+    """Makes nodes with a file and other parameters; ``given(*words, **parameters)``."""
+    def make(*words, **parameters):
+        values = {'sdf_file': 'cell.sdf', **parameters}
+        return make_node('bridge', *words, *(
+            word for name, value in values.items() for word in ('-p', f'{name}:={value}')))
+    return make
 
 
 @pytest.fixture(name='settings')
-def default_settings(make_node):
-    return settings_from_node(make_node('defaults', *FILE))
+def default_settings(given):
+    return settings_from_node(given())
 
 
 @pytest.mark.parametrize(('name', 'value', 'sentence'), [
@@ -52,39 +61,37 @@ def default_settings(make_node):
     ('publish_rate', 'fast', 'is fast, which is a string; it must be a number'),
     ('anchor_models', 'some,all', 'is "some,all"; it must be one of auto, all, static, none'),
 ])
-def test_a_wrong_value_on_the_command_line_is_named_once(make_node, name, value, sentence):
-    node = make_node('bridge', '-p', 'sdf_file:=cell.sdf', '-p', f'{name}:={value}')
+def test_a_wrong_value_on_the_command_line_is_named_once(given, name, value, sentence):
     with pytest.raises(SettingsError) as refusal:
-        settings_from_node(node)
+        settings_from_node(given(**{name: value}))
     (found,) = refusal.value.sentences
     assert found.startswith(f'parameter {name} {sentence}')
 
 
 @pytest.mark.parametrize(('name', 'value', 'expected'), [
     ('frame_prefix', '5', '5'), ('pose_topics', '$(id)\';a,"b', ("$(id)';a", '"b'))])
-def test_the_advised_argument_sets_the_value(make_node, name, value, expected):
+def test_the_advised_argument_sets_the_value(given, name, value, expected):
     with pytest.raises(SettingsError) as refusal:
-        settings_from_node(make_node('bridge', *FILE, '-p', f'{name}:={value}'))
+        settings_from_node(given(**{name: value}))
     words = shlex.split(refusal.value.sentences[0].rpartition(': ')[2])
-    assert getattr(settings_from_node(make_node('bridge', *FILE, *words)), name) == expected
+    assert getattr(settings_from_node(given(*words)), name) == expected
 
 
-def test_a_whole_number_is_a_number(make_node):
-    node = make_node('bridge', *FILE, '-p', 'publish_rate:=10')
+def test_a_whole_number_is_a_number(given):
+    node = given(publish_rate=10)
     assert settings_from_node(node).publish_rate == 10.0
     assert node.get_parameter('publish_rate').type_ is Parameter.Type.DOUBLE
 
 
-def test_the_separator_of_sdf_can_be_kept_as_its_description_says(make_node):
+def test_the_separator_of_sdf_can_be_kept_as_its_description_says(given):
     words = """-p "frame_separator:='::'\""""
     assert words in DECLARATIONS['frame_separator'].description
-    settings = settings_from_node(make_node('bridge', *FILE, *shlex.split(words)))
+    settings = settings_from_node(given(*shlex.split(words)))
     assert settings.frame_separator == '::'
 
 
-def test_unknown_parameters_are_named_with_the_nearest_one(make_node):
-    node = make_node(
-        'bridge', *FILE, '-p', 'frame_prefx:=r1/', '-p', 'color:=3', '-p', 'use_sim_time:=true')
+def test_unknown_parameters_are_named_with_the_nearest_one(given):
+    node = given(frame_prefx='r1/', color=3, use_sim_time='true')
     sentences = [
         'there is no parameter "frame_prefx", so it has no effect; did you mean "frame_prefix"?',
         'there is no parameter "color", so it has no effect']
@@ -93,10 +100,9 @@ def test_unknown_parameters_are_named_with_the_nearest_one(make_node):
     assert warnings_about_unknown_parameters(node) == sentences
 
 
-def test_all_wrong_values_are_named(make_node):
-    node = make_node('bridge', '-p', 'kinds:=[rope]', '-p', 'frame_names:=x', '-p', 'watch:=1')
+def test_all_wrong_values_are_named(given):
     with pytest.raises(SettingsError) as refusal:
-        settings_from_node(node)
+        settings_from_node(given(sdf_file="''", kinds='[rope]', frame_names='x', watch=1))
     assert [sentence.split()[1] for sentence in refusal.value.sentences] == [
         'sdf_file', 'frame_names', 'kinds', 'watch']
 
@@ -147,15 +153,15 @@ def test_defaults(settings):
     assert (settings.publish_rate, settings.watch) == (0.0, True)
 
 
-def test_an_empty_list_can_be_given(make_node):
-    node = make_node('bridge', *FILE, '-p', 'pose_topics:=[]')
+def test_an_empty_list_can_be_given(given):
+    node = given(pose_topics=[])
     assert settings_from_node(node).pose_topics == ()
     parameter = node.get_parameter('pose_topics')
     assert (parameter.type_, parameter.value) == (Parameter.Type.STRING_ARRAY, [])
 
 
-def test_new_values_are_converted_and_the_others_stay(make_node):
-    before = settings_from_node(make_node('bridge', *FILE, '-p', 'root_frame:=map'))
+def test_new_values_are_converted_and_the_others_stay(given):
+    before = settings_from_node(given(root_frame='map'))
     settings = changed_settings(before, [Parameter(name, value=value) for name, value in {
         'sdf_file': 'a.sdf', 'anchor_models': 'static', 'model': 'r::arm',
         'frame_names': 'scoped', 'frame_separator': '.', 'frame_prefix': 'left_',
@@ -185,15 +191,15 @@ def test_the_file_is_read_again_where_that_changes_anything(settings, name, valu
     assert (changed.load_request != settings.load_request) is needs_load
 
 
-def test_only_the_permission_to_write_files_cannot_be_changed(make_node):
-    node = make_node('bridge', *FILE)
+def test_only_the_permission_to_write_files_cannot_be_changed(given):
+    node = given()
     settings_from_node(node)
     descriptors = node.describe_parameters(list(DECLARATIONS))
     assert [each.name for each in descriptors if each.read_only] == ['allow_set_pose']
 
 
-def test_rates_have_a_range(make_node):
-    node = make_node('bridge', *FILE)
+def test_rates_have_a_range(given):
+    node = given()
     settings_from_node(node)
     assert {
         (each.name, number.from_value, number.to_value)
@@ -204,8 +210,8 @@ def test_rates_have_a_range(make_node):
 
 
 @pytest.mark.parametrize('name', DECLARATIONS)
-def test_every_parameter_explains_itself(make_node, name):
-    node = make_node('bridge', *FILE)
+def test_every_parameter_explains_itself(given, name):
+    node = given()
     settings_from_node(node)
     descriptor = node.describe_parameter(name)
     assert descriptor.description.endswith('.')
@@ -290,11 +296,9 @@ def test_a_name_that_is_repeated_gets_nothing(node, service_type, field, names, 
     ('depth', -1, 'an integer from 0 to 2147483647'),
     ('depth', 2**31, 'an integer from 0 to 2147483647'),
 ])
-def test_a_value_that_no_policy_has_ends_the_start(make_node, policy, value, rule):
-    node = make_node(
-        'bridge', '-p', 'sdf_file:=a.sdf', '-p', f'qos_overrides./tf.publisher.{policy}:={value}')
+def test_a_value_that_no_policy_has_ends_the_start(given, policy, value, rule):
     with pytest.raises(SettingsError, match=f'.{policy} is {value}; it must be {rule}'):
-        settings_from_node(node)
+        settings_from_node(given(**{f'qos_overrides./tf.publisher.{policy}': value}))
 
 
 @pytest.mark.parametrize(('name', 'possible'), [
@@ -303,17 +307,16 @@ def test_a_value_that_no_policy_has_ends_the_start(make_node, policy, value, rul
      'publisher.history, publisher.depth, publisher.reliability'),
     ('/parameter_events.publisher.depth', 'nothing'),
 ])
-def test_an_override_without_effect_is_told(make_node, name, possible):
+def test_an_override_without_effect_is_told(given, name, possible):
     name = f'qos_overrides.{name}'
-    (warning,) = warnings_about_unknown_parameters(
-        make_node('bridge', '-p', 'sdf_file:=a.sdf', '-p', f'{name}:=1'))
+    (warning,) = warnings_about_unknown_parameters(given(**{name: 1}))
     assert warning.startswith(f'parameter {name} has no effect here; of /')
     assert warning.endswith(f', one can override {possible}')
 
 
-def test_a_description_from_a_topic_is_told_to_have_no_effect(make_node):
+def test_a_description_from_a_topic_is_told_to_have_no_effect(given):
     (warning,) = warnings_about_unknown_parameters(
-        make_node('bridge', '-p', 'description_from_topic:=true'), ['use_tf_static'])
+        given(description_from_topic='true'), ['use_tf_static'])
     assert warning == ('parameter description_from_topic has no effect here; set '
                        'robot_description to the text, or sdf_file to a file')
 
@@ -321,6 +324,5 @@ def test_a_description_from_a_topic_is_told_to_have_no_effect(make_node):
 @pytest.mark.parametrize('name', [
     '/joint_states.subscription.reliability', '/tf_static.publisher.depth',
     '/scan.subscription.depth', '/tf', 'x'])
-def test_other_overrides_are_not_told(make_node, name):
-    assert warnings_about_unknown_parameters(make_node(
-        'bridge', '-p', 'sdf_file:=a.sdf', '-p', f'qos_overrides.{name}:=1')) == []
+def test_other_overrides_are_not_told(given, name):
+    assert warnings_about_unknown_parameters(given(**{f'qos_overrides.{name}': 1})) == []
