@@ -99,7 +99,7 @@ def soak(folder, minutes, domain):
     path.write_text(world(0), encoding='utf-8')
     spawning = multiprocessing.get_context('spawn')
     last, results = spawning.Value('d', 0.0), spawning.Queue()
-    bridge = BridgeProcess('--ros-args', '-p', f'sdf_file:={path}').wait_until_started()
+    bridge = BridgeProcess(sdf_file=path).wait_until_started()
     clients = [
         spawning.Process(target=target, args=(domain, last, results))
         for target in (listen, call) for _ in range(CLIENTS)]

@@ -3,10 +3,12 @@
 """The installed executable in a process of its own, as ``ros2 run`` would start it."""
 
 import contextlib
+import itertools
 import os
 from pathlib import Path
 import signal
 import subprocess
+import sys
 import threading
 import time
 
@@ -134,12 +136,18 @@ class BridgeProcess(LoggedProcess):
     A running bridge.
 
     :param arguments: what follows the executable on the command line.
-    :param program: the name of the executable.
+    :param program: the name of the executable, or a text in Python that runs the bridge.
+    :param parameters: their values by their names; they follow the arguments.
     """
 
-    def __init__(self, *arguments, program='bridge'):
+    def __init__(self, *arguments, program='bridge', with_children=False, **parameters):
         from command_line import executable_of_workspace
-        super().__init__([executable_of_workspace(program), *arguments])
+        command = [sys.executable, '-c', program] if '\n' in program else [
+            executable_of_workspace(program)]
+        words = (('-p', f'{name}:={value}') for name, value in parameters.items())
+        super().__init__(
+            [*command, *arguments, '--ros-args', *itertools.chain(*words)],
+            with_children=with_children)
 
     def wait_until_started(self):
         self.wait_for_line(STARTED)

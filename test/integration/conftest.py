@@ -8,9 +8,8 @@ those with the fixture ``bridge`` find a file and parameters of their own.
 """
 
 import contextlib
-from functools import partial
 
-from bridge_process import BridgeProcess
+from bridge_process import BridgeProcess, LoggedProcess
 import pytest
 from ros_domain import environment_with_domain
 
@@ -20,8 +19,8 @@ def ended_later(make):
     """Give a function that makes processes or listeners, which all end with the context."""
     made = []
 
-    def start(*arguments):
-        made.append(make(*arguments))
+    def start(*arguments, **options):
+        made.append(make(*arguments, **options))
         return made[-1]
 
     try:
@@ -48,8 +47,15 @@ def ros_domain(request, tmp_path):
 
 @pytest.fixture
 def start_bridge(ros_domain):
-    """Starts the installed executable; ``start_bridge(*arguments)``."""
+    """Starts the installed executable; ``start_bridge(*arguments, **parameters)``."""
     with ended_later(BridgeProcess) as start:
+        yield start
+
+
+@pytest.fixture
+def start_program(ros_domain):
+    """Starts any program; ``start_program(command)``."""
+    with ended_later(LoggedProcess) as start:
         yield start
 
 
@@ -68,7 +74,7 @@ def shared_bridge(start_shared_bridge, start_shared_listener, tmp_path_factory):
     from changes import SharedBridge, world
     path = tmp_path_factory.mktemp('shared') / 'cell.sdf'
     path.write_text(world(1), encoding='utf-8')
-    bridge = start_shared_bridge('--ros-args', '-p', f'sdf_file:={path}').wait_until_started()
+    bridge = start_shared_bridge(sdf_file=path).wait_until_started()
     return SharedBridge(bridge, start_shared_listener())
 
 
@@ -86,13 +92,6 @@ def listener(bridge, start_listener):
     listen_to_tf(listener)
     wait_for_x(listener, 1.0)
     return listener
-
-
-@pytest.fixture
-def start_robot_state_publisher(ros_domain):
-    """Starts the executable of that name; ``start_robot_state_publisher(*arguments)``."""
-    with ended_later(partial(BridgeProcess, program='robot_state_publisher')) as start:
-        yield start
 
 
 @pytest.fixture

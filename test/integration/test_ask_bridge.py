@@ -17,8 +17,7 @@ EXAMPLES = Path(__file__).resolve().parents[2] / 'examples'
 @pytest.fixture(name='ask', scope='module')
 def ask_running_bridge(start_shared_bridge):
     """Asks a bridge; ``ask(*arguments)`` returns the ended process."""
-    start_shared_bridge(
-        '--ros-args', '-p', f'sdf_file:={EXAMPLES / "work_cell.sdf"}').wait_until_started()
+    start_shared_bridge(sdf_file=EXAMPLES / 'work_cell.sdf').wait_until_started()
 
     def ask(*arguments):
         return subprocess.run(

@@ -89,7 +89,7 @@ def listeners(start_shared_bridge, start_shared_listener, sdf_file):
         return listener
 
     early = start()
-    start_shared_bridge('--ros-args', '-p', f'sdf_file:={sdf_file}').wait_until_started()
+    start_shared_bridge(sdf_file=sdf_file).wait_until_started()
     return {'early': early, 'late': start()}
 
 
@@ -149,8 +149,7 @@ def test_the_type_of_tf_static_is_the_one_on_every_ros_machine(late_listener):
 
 
 def test_models_that_are_not_anchored_still_have_poses(start_bridge, start_listener, sdf_file):
-    bridge = start_bridge(
-        '--ros-args', '-p', f'sdf_file:={sdf_file}', '-p', 'anchor_models:=static')
+    bridge = start_bridge(sdf_file=sdf_file, anchor_models='static')
     bridge.wait_for_line('no transform to "robot/base", the root of its tree')
     listener = start_listener()
     listener.listen_to_frames()
@@ -166,9 +165,8 @@ def test_models_that_are_not_anchored_still_have_poses(start_bridge, start_liste
 
 def test_names_root_and_topics_follow_the_parameters(start_bridge, start_listener, sdf_file):
     start_bridge(
-        '--ros-args', '-r', '__ns:=/left', '-p', f'sdf_file:={sdf_file}', '-p', 'root_frame:=map',
-        '-p', 'frame_prefix:=left_', '-p', 'frame_separator:=.', '-p', 'model:=robot::arm',
-        '-p', 'pose_topics:=["*hand"]')
+        '--ros-args', '-r', '__ns:=/left', sdf_file=sdf_file, root_frame='map',
+        frame_prefix='left_', frame_separator='.', model='robot::arm', pose_topics=['*hand'])
     listener = start_listener()
     listener.listen_to_frames('/left/sdf_pose_bridge')
     topic = '/left/sdf_pose_bridge/poses/left_robot_x2e_arm_x2e_hand'

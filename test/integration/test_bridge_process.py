@@ -2,16 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """How the process starts, fails and ends, seen from outside."""
 
+from functools import partial
 import os
 import re
 import signal
-import sys
 
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from bridge_process import LoggedProcess
 from builtin_interfaces.msg import Time
 from changes import Monitor, reload
 from ros_domain import needs_fast_dds
@@ -71,10 +70,8 @@ def path(tmp_path):
 
 @pytest.fixture(name='start')
 def start_on_file(start_bridge, path):
-    """Starts a bridge on the file; ``start(*arguments)``."""
-    def start(*arguments):
-        return start_bridge('--ros-args', '-p', f'sdf_file:={path}', *arguments)
-    return start
+    """Starts a bridge on the file; ``start(*arguments, **parameters)``."""
+    return partial(start_bridge, sdf_file=path)
 
 
 def assert_ended_well(bridge):
@@ -82,22 +79,22 @@ def assert_ended_well(bridge):
     assert not [line for line in bridge.lines if 'Traceback' in line or 'Error' in line]
 
 
-@pytest.mark.parametrize(('argument', 'patterns'), [
-    ('sdf_file:=bad.sdf', [
+@pytest.mark.parametrize(('parameters', 'patterns'), [
+    ({'sdf_file': 'bad.sdf'}, [
         r'\[FATAL\].*/bad\.sdf:3: POSE_RELATIVE_TO_INVALID: ',
         r'\[FATAL\].*/bad\.sdf:5: DUPLICATE_NAME: ']),
-    ('sdf_file:=missing.sdf', [r'\[FATAL\].*/missing\.sdf: FILE_READ: ']),
-    ('sdf_fil:=a.sdf', [
+    ({'sdf_file': 'missing.sdf'}, [r'\[FATAL\].*/missing\.sdf: FILE_READ: ']),
+    ({'sdf_fil': 'a.sdf'}, [
         r'\[WARN\].*did you mean "sdf_file"\?$', r'\[FATAL\].* parameter sdf_file is not set']),
-    ('use_sim_time:=5', [
+    ({'use_sim_time': 5}, [
         "sdf_pose_bridge: Trying to set parameter 'use_sim_time' to '5' of .* expecting .*'BOOL'$",
     ]),
 ])
 def test_each_reason_not_to_start_has_a_line(
-        start_bridge, tmp_path, monkeypatch, argument, patterns):
+        start_bridge, tmp_path, monkeypatch, parameters, patterns):
     (tmp_path / 'bad.sdf').write_text(BAD, encoding='utf-8')
     monkeypatch.chdir(tmp_path)
-    bridge = start_bridge('--ros-args', '-p', argument)
+    bridge = start_bridge(**parameters)
     assert bridge.wait_for_end() == 1
     for line, pattern in zip(bridge.lines, patterns, strict=True):
         assert re.match(pattern, line), line
@@ -125,7 +122,7 @@ def test_the_profile_of_the_middleware_is_logged_for_debugging(
     monkeypatch.chdir(tmp_path)
     if value is not None:
         monkeypatch.setenv(OTHER_VARIABLE, value)
-    bridge = start('--log-level', 'sdf_pose_bridge:=debug')
+    bridge = start('--ros-args', '--log-level', 'sdf_pose_bridge:=debug')
     assert text in bridge.wait_for_line('middleware profile')
     bridge.wait_until_started()
     assert not [line for line in bridge.lines if 'XMLPARSER' in line]
@@ -153,19 +150,16 @@ def test_a_signal_ends_it_before_anything_else_happens(start, start_listener):
     assert monitor.count == count
 
 
-def test_a_signal_ends_it_although_nothing_else_wakes_it(ros_domain):
-    process = LoggedProcess([sys.executable, '-c', IDLE])
-    try:
-        process.wait_for_line('spins')
-        process.wait_until_sleeping()
-        process.send(signal.SIGINT)
-        assert process.wait_for_end() == 0, '\n'.join(process.lines)
-    finally:
-        process.end()
+def test_a_signal_ends_it_although_nothing_else_wakes_it(start_bridge):
+    process = start_bridge(program=IDLE)
+    process.wait_for_line('spins')
+    process.wait_until_sleeping()
+    process.send(signal.SIGINT)
+    assert process.wait_for_end() == 0, '\n'.join(process.lines)
 
 
 def test_a_negative_time_on_the_clock_does_not_end_it(start, start_listener):
-    bridge = start('-p', 'use_sim_time:=true').wait_until_started()
+    bridge = start(use_sim_time=True).wait_until_started()
     listener = start_listener()
     clock = listener.node.create_publisher(Clock, '/clock', 1)
 
@@ -201,7 +195,7 @@ def test_a_signal_ends_it_well_before_anything_is_loaded(start, number):
 @STOP_SIGNALS
 def test_a_signal_ends_it_well_while_it_reads(start_bridge, tmp_path, number):
     slow = SlowFile(tmp_path / 'slow.sdf')
-    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={slow.path}')
+    bridge = start_bridge(sdf_file=slow.path)
     with slow.opened():
         bridge.wait_until_sleeping()
         bridge.send(number)

@@ -49,8 +49,7 @@ def ask(listener, frame, x, frame_id='', *, dry_run=False):
 
 def test_measured_poses_go_into_the_files(
         start_bridge, start_listener, ros_domain, path):
-    start_bridge('--ros-args', '-p', f'sdf_file:={path}', '-p', 'allow_set_pose:=true',
-                 '-p', 'use_joint_states:=true').wait_until_started()
+    start_bridge(sdf_file=path, allow_set_pose=True, use_joint_states=True).wait_until_started()
     client, observer = start_listener(), start_listener()
     listen_to_tf(observer)
     wait_for_x(observer, 5.0, 'fixture')

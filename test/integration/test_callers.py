@@ -16,7 +16,6 @@ from hypothesis import strategies as st
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from bridge_process import LoggedProcess
 from changes import (
     BRIDGE,
     listen_to_tf,
@@ -145,7 +144,7 @@ def test_many_clients_at_once_are_all_answered(bridge, start_listener):
 def test_a_client_that_waits_for_the_node_is_answered(start_bridge, start_listener, file):
     listener = start_listener()
     client = listener.node.create_client(SetParameters, f'{BRIDGE}/set_parameters')
-    start_bridge('--ros-args', '-p', f'sdf_file:={file}')
+    start_bridge(sdf_file=file)
     # As rclcpp, which is told of each change; client.wait_for_service looks every 0.25 s.
     wait_until(client.service_is_ready, lambda: time.sleep(0.001))
     answer = Answer(client, SetParameters.Request(parameters=[
@@ -156,17 +155,17 @@ def test_a_client_that_waits_for_the_node_is_answered(start_bridge, start_listen
     wait_for_x(listener, 1.0, 'r/crate/body')
 
 
-def test_a_client_that_leaves_before_the_answer_harms_nobody(bridge, file, start_listener):
+def test_a_client_that_leaves_before_the_answer_harms_nobody(
+        bridge, file, start_listener, start_program):
     listener = start_listener()
     set_parameters(listener, watch=False)
     slow = SlowFile(file, world(1))
     slow.hold()
-    client = LoggedProcess([sys.executable, '-c', LEAVING_CLIENT])
+    client = start_program([sys.executable, '-c', LEAVING_CLIENT])
     with slow.opened():
         client.send(9)
         client.wait_for_end()
         slow.write(world(2))
-    client.end()
     assert reload(listener).success
 
 

@@ -8,7 +8,6 @@ import signal
 import subprocess
 import sys
 
-from bridge_process import LoggedProcess
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
@@ -41,29 +40,22 @@ def python_client():
 
 
 @pytest.fixture(params=['python_client', 'cpp_client'])
-def start_client(request, shared_ros_domain):
+def start_client(request, start_program):
     """Starts a client; ``start_client(**parameters)``."""
     command = request.getfixturevalue(request.param)
-    processes = []
 
     def start(**parameters):
         words = [word for key, value in parameters.items() for word in ('-p', f'{key}:={value}')]
         # Where the tests run in the background, SIGINT may be ignored.
-        processes.append(LoggedProcess(
-            ['env', '--default-signal=INT', *command, '--ros-args', *words]))
-        return processes[-1]
-
-    yield start
-    for process in processes:
-        process.end()
+        return start_program(['env', '--default-signal=INT', *command, '--ros-args', *words])
+    return start
 
 
 @pytest.fixture(name='bridge', scope='module')
 def bridge_of_work_cell(start_shared_bridge):
     # With a rate a client asks again where the middleware has lost the first answer to it.
     return start_shared_bridge(
-        '--ros-args', '-p', f'sdf_file:={EXAMPLES / "work_cell.sdf"}', '-p', 'publish_rate:=1.0',
-    ).wait_until_started()
+        sdf_file=EXAMPLES / 'work_cell.sdf', publish_rate=1.0).wait_until_started()
 
 
 @pytest.mark.usefixtures('bridge')
@@ -81,7 +73,6 @@ def test_it_logs_why_a_lookup_was_refused(start_client):
     start_client(frame='fixture', relative_to='tabel').wait_for_line('"tabel"')
 
 
-@pytest.mark.usefixtures('ros_domain')  # without the bridge
 def test_it_ends_while_it_waits_for_the_bridge(start_client):
     client = start_client()
     client.wait_for_line(': waiting for ')

@@ -51,8 +51,8 @@ def test_links_are_where_a_simulator_has_them(start_bridge, tf, joints, tmp_path
     program = Path(__file__).with_name('drake_world.py')
     simulator = Simulator(tf, prefix='')
     start_bridge(
-        '--ros-args', '-p', f'sdf_file:={path}', '-p', 'simulator:=/',
-        '-p', 'simulator_rate:=100.0', '-p', 'use_joint_states:=true').wait_until_started()
+        sdf_file=path, simulator='/', simulator_rate=100.0, use_joint_states=True,
+    ).wait_until_started()
     largest = 0.0
     with subprocess.Popen(
             [DRAKE, program, path], env={}, text=True, stdin=subprocess.PIPE,

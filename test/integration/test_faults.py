@@ -15,7 +15,6 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from bridge_process import LoggedProcess, STARTED
 from builtin_interfaces.msg import Time
 from changes import (
     asked_to_set,
@@ -59,12 +58,8 @@ rclpy.spin(node)
 
 @pytest.fixture(name='start')
 def start_with_file(start_bridge):
-    """Starts a bridge on a file; ``start(path, *parameters)``."""
-    def start(path, *parameters):
-        arguments = [word for parameter in parameters for word in ('-p', parameter)]
-        return start_bridge(
-            '--ros-args', '-p', f'sdf_file:={path}', *arguments).wait_until_started()
-    return start
+    """Starts a bridge on a file; ``start(path)``."""
+    return lambda path: start_bridge(sdf_file=path).wait_until_started()
 
 
 @pytest.fixture(name='listener')
@@ -192,21 +187,16 @@ sys.exit(main())
 @pytest.mark.parametrize('service', ['reload', 'convert_rotation'])
 @pytest.mark.parametrize('first', size(range(3, 300, 90), range(0, 3000, 40)))
 def test_after_failing_allocations_the_bridge_answers_or_is_gone(
-        ros_domain, file, tmp_path, listener, service, first):
+        start_bridge, file, tmp_path, listener, service, first):
     pytest.importorskip('_testcapi', reason='needs a module for tests of Python itself')
     control = tmp_path / 'control'
-    bridge = LoggedProcess([
-        sys.executable, '-c', FAILING, control, '--ros-args', '-p', f'sdf_file:={file}'])
-
-    try:
-        wait_for_x(listener, 1.0)
-        for name in ('reload', 'convert_rotation'):
-            assert_answers_or_is_gone(bridge, listener, name)
-        control.write_text(f'{first} {first + 30}')
-        for name in (service, 'reload', 'convert_rotation'):
-            assert_answers_or_is_gone(bridge, listener, name)
-    finally:
-        bridge.end()
+    bridge = start_bridge(control, program=FAILING, sdf_file=file)
+    wait_for_x(listener, 1.0)
+    for name in ('reload', 'convert_rotation'):
+        assert_answers_or_is_gone(bridge, listener, name)
+    control.write_text(f'{first} {first + 30}')
+    for name in (service, 'reload', 'convert_rotation'):
+        assert_answers_or_is_gone(bridge, listener, name)
 
 
 @pytest.mark.parametrize('megabytes', size((), range(1, 40, 3)))
@@ -270,16 +260,11 @@ def set_the_pose(listener, file):
 
 @pytest.mark.parametrize('change', [change_the_file, set_another_file, set_the_pose])
 def test_a_publish_that_fails_after_the_swap_of_scenes_ends_the_bridge(
-        ros_domain, file, listener, change):
-    bridge = LoggedProcess([
-        sys.executable, '-c', UNABLE_TO_PUBLISH, '--ros-args', '-p', f'sdf_file:={file}',
-        '-p', 'allow_set_pose:=true'])
-    try:
-        wait_for_x(listener, 1.0)
-        change(listener, file)
-        assert bridge.wait_for_end() == 1
-    finally:
-        bridge.end()
+        start_bridge, file, listener, change):
+    bridge = start_bridge(program=UNABLE_TO_PUBLISH, sdf_file=file, allow_set_pose=True)
+    wait_for_x(listener, 1.0)
+    change(listener, file)
+    assert bridge.wait_for_end() == 1
     assert 'sdf_pose_bridge: thread "loader" has failed, so the node ends' in bridge.lines
     assert not [line for line in bridge.lines if 'is rejected' in line]
 
@@ -305,20 +290,15 @@ sys.exit(run(sys.argv, 'bridge', reader))
 """The node, which tells when it follows the joints of a scene, and when it publishes a scene."""
 
 
-def test_the_joints_of_a_new_scene_are_followed_before_it_is_published(ros_domain, file):
+def test_the_joints_of_a_new_scene_are_followed_before_it_is_published(start_bridge, file):
     file.write_text(ARM, encoding='utf-8')
-    bridge = LoggedProcess([
-        sys.executable, '-c', TELLING, '--ros-args', '-p', f'sdf_file:={file}',
-        '-p', 'use_joint_states:=true'])
-    try:
-        bridge.wait_for_line('has done follow')
-        replace(file, ARM.replace('upper', 'lower'))
-        bridge.wait_for_line('has done follow', 2)
-        bridge.wait_for_line('has done publish_tf_static', 2)
-        done = [line for line in bridge.lines if line.startswith('has done')]
-        assert done[-2:] == ['has done follow', 'has done publish_tf_static']
-    finally:
-        bridge.end()
+    bridge = start_bridge(program=TELLING, sdf_file=file, use_joint_states=True)
+    bridge.wait_for_line('has done follow')
+    replace(file, ARM.replace('upper', 'lower'))
+    bridge.wait_for_line('has done follow', 2)
+    bridge.wait_for_line('has done publish_tf_static', 2)
+    done = [line for line in bridge.lines if line.startswith('has done')]
+    assert done[-2:] == ['has done follow', 'has done publish_tf_static']
 
 
 WITH_DEFECT = """
@@ -343,23 +323,18 @@ ARM = """<sdf version="1.11"><model name="arm"><link name="base"/><link name="up
 
 
 def test_a_bridge_that_can_process_no_message_says_so_and_ends(
-        ros_domain, make_node, file, listener):
+        start_bridge, make_node, file, listener):
     file.write_text(ARM, encoding='utf-8')
     senders = [
         make_node(name).create_publisher(JointState, 'joint_states', 10)
         for name in ('arm', 'gripper')]
     listener.node.create_timer(0.1, lambda: [each.publish(JointState()) for each in senders])
     monitor = Monitor(listener)
-    bridge = LoggedProcess([
-        sys.executable, '-c', WITH_DEFECT, '--ros-args', '-p', f'sdf_file:={file}',
-        '-p', 'use_joint_states:=true'])
-    try:
-        monitor.wait_for(DiagnosticStatus.ERROR)
-        assert monitor.status.message == DEFECT
-        listener.wait(lambda: not bridge.is_running, lambda: 'the end of the bridge')
-        assert bridge.wait_for_end() == 1
-    finally:
-        bridge.end()
+    bridge = start_bridge(program=WITH_DEFECT, sdf_file=file, use_joint_states=True)
+    monitor.wait_for(DiagnosticStatus.ERROR)
+    assert monitor.status.message == DEFECT
+    listener.wait(lambda: not bridge.is_running, lambda: 'the end of the bridge')
+    assert bridge.wait_for_end() == 1
     assert 'sdf_pose_bridge: thread "joint states" has failed, so the node ends' in bridge.lines
     assert sum('internal error in' in line for line in bridge.lines) == 1
 
@@ -409,29 +384,22 @@ sys.exit(main())
     ('processor_s=60.0, memory_bytes=5 * 10**7', 'more than 50 MB of memory'),
 ])
 def test_a_file_that_needs_too_much_is_refused(
-        ros_domain, file, tmp_path, listener, limits, message):
+        start_bridge, file, tmp_path, listener, limits, message):
     large = tmp_path / 'large.sdf'
     large.write_text(world(2, extra=''.join(
         f'<model name="m{i}"><link name="l"/></model>' for i in range(100_000))))
-    bridge = LoggedProcess([
-        sys.executable, '-c', LIMITED.format(limits), '--ros-args', '-p', f'sdf_file:={file}'])
-    try:
-        wait_for_x(listener, 1.0)
-        assert reload(listener).success
-        assert reason_for_refusal(listener, sdf_file=str(large)) == (
-            f'{large}: LIMIT: the file needs {message} to be read')
-        assert reload(listener).success
-    finally:
-        bridge.end()
+    start_bridge(program=LIMITED.format(limits), sdf_file=file)
+    wait_for_x(listener, 1.0)
+    assert reload(listener).success
+    assert reason_for_refusal(listener, sdf_file=str(large)) == (
+        f'{large}: LIMIT: the file needs {message} to be read')
+    assert reload(listener).success
 
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_to_all_processes_ends_them_well(ros_domain, tmp_path, number):
+def test_a_signal_to_all_processes_ends_them_well(start_bridge, tmp_path, number):
     slow = SlowFile(tmp_path / 'slow.sdf', world(1))
-    bridge = LoggedProcess(
-        [executable_of_workspace('bridge'), '--ros-args', '-p', f'sdf_file:={slow.path}'],
-        with_children=True)
-    bridge.wait_for_line(STARTED)
+    bridge = start_bridge(sdf_file=slow.path, with_children=True).wait_until_started()
     slow.hold()
     os.utime(slow.path)
     with slow.opened():
@@ -513,10 +481,11 @@ def test_a_clock_that_jumps_back_keeps_nothing_from_being_published(file, listen
 
 
 @pytest.mark.usefixtures('bridge')
-def test_a_listener_that_is_stopped_keeps_nobody_waiting_and_gets_the_last(file, listener):
+def test_a_listener_that_is_stopped_keeps_nobody_waiting_and_gets_the_last(
+        file, listener, start_program):
     set_parameters(listener, publish_rate=100.0)
     wait_for_x(listener, 1.0)
-    stopped = LoggedProcess([sys.executable, '-c', LISTENING])
+    stopped = start_program([sys.executable, '-c', LISTENING])
     stopped.wait_for_line('x 1.0')
     stopped.send(signal.SIGSTOP)
     last = size(5, 50)
@@ -526,4 +495,3 @@ def test_a_listener_that_is_stopped_keeps_nobody_waiting_and_gets_the_last(file,
         wait_for_x(listener, float(x))
     stopped.send(signal.SIGCONT)
     stopped.wait_for_line(f'x {last}.0')
-    stopped.end()

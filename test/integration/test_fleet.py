@@ -105,17 +105,17 @@ def test_topics_of_gazebo_can_be_followed_and_changed(joints, tf):
 
 
 def test_robot_state_publisher_has_the_one_topic_in_a_world_too(
-        start_robot_state_publisher, file, tf):
-    start_robot_state_publisher(
-        '--ros-args', '-r', f'__node:={BRIDGE[1:]}', '-p', f'sdf_file:={file}',
+        start_bridge, file, tf):
+    start_bridge(
+        '--ros-args', '-r', f'__node:={BRIDGE[1:]}', program='robot_state_publisher', sdf_file=file
     ).wait_until_started()
     wait_for_topics(tf, '/joint_states')
 
 
 def test_topics_that_become_one_are_reported_and_lose_nothing(start_bridge, file, joints, tf):
     bridge = start_bridge(
-        '--ros-args', '-p', f'sdf_file:={file}', '-p', 'use_joint_states:=true',
-        '-r', 'r1/joint_states:=/both', '-r', 'r2/joint_states:=/both').wait_until_started()
+        '--ros-args', '-r', 'r1/joint_states:=/both', '-r', 'r2/joint_states:=/both',
+        sdf_file=file, use_joint_states=True).wait_until_started()
     wait_for_topics(tf, '/joint_states', '/both', '/r3/joint_states')
     bridge.wait_for_line(
         'joint_states_topics has /both for "r1", "r2", so messages on it can be about all '
@@ -149,9 +149,7 @@ def test_too_many_topics_are_rejected_in_a_setting_and_in_a_file(file, tf):
 
 def test_too_many_topics_prevent_the_start(start_bridge, file):
     patterns = [f'{{model}}/j{number}' for number in range(400)]
-    bridge = start_bridge(
-        '--ros-args', '-p', f'sdf_file:={file}', '-p', 'use_joint_states:=true', '-p',
-        f'joint_states_topics:={patterns}')
+    bridge = start_bridge(sdf_file=file, use_joint_states=True, joint_states_topics=patterns)
     assert bridge.wait_for_end() == 1
     (line,) = bridge.lines
     assert line.startswith('[FATAL]')

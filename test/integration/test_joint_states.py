@@ -9,7 +9,6 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from bridge_process import LoggedProcess
 from builtin_interfaces.msg import Time
 from changes import (
     asked_to_reload,
@@ -104,9 +103,7 @@ def test_before_the_first_message_all_joints_can_be_at_zero(file, tf):
 
 def test_joints_that_no_message_has_named_are_nowhere_until_their_driver_is_up(
         start_bridge, file, joints, tf):
-    bridge = start_bridge(
-        '--ros-args', '-p', f'sdf_file:={file}', '-p', 'use_joint_states:=true', '-p',
-        'anchor_models:=all')
+    bridge = start_bridge(sdf_file=file, use_joint_states=True, anchor_models='all')
     tf.listener.wait(lambda: joints.send({'turn': 0.0}) and tf.last, lambda: 'the first message')
     poses = listen_to_poses(tf, 'base', 'upper', 'slide', 'tool', 'finger')
     transforms = listen_to_transforms(tf)
@@ -130,7 +127,7 @@ def test_joints_that_no_message_has_named_are_nowhere_until_their_driver_is_up(
 
 
 def test_joints_that_do_not_follow_say_once_which_parameter_moves_them(start_bridge, file, tf):
-    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={file}').wait_until_started()
+    bridge = start_bridge(sdf_file=file).wait_until_started()
     assert reload(tf.listener).success
     bridge.wait_for_line(' publishing ', 2)
     lines = [line for line in bridge.lines if 'use_joint_states' in line]
@@ -138,16 +135,13 @@ def test_joints_that_do_not_follow_say_once_which_parameter_moves_them(start_bri
     assert 'fixed as in the file: 2 joints that can move, for example "turn"' in lines[0]
 
 
-def test_a_flood_of_messages_does_not_keep_callers_waiting(follow, tf):
+def test_a_flood_of_messages_does_not_keep_callers_waiting(follow, tf, start_program):
     bridge = follow()
-    flooding = LoggedProcess([sys.executable, '-c', FLOODING])
-    try:
-        bridge.wait_for_line('not the name of one moving joint')
-        for _ in range(3):
-            pose_of(tf, 'slide')
-    finally:
-        flooding.send(signal.SIGKILL)
-        flooding.end()
+    flooding = start_program([sys.executable, '-c', FLOODING])
+    bridge.wait_for_line('not the name of one moving joint')
+    for _ in range(3):
+        pose_of(tf, 'slide')
+    flooding.send(signal.SIGKILL)
 
 
 def test_two_publishers_of_a_joint_are_in_the_log_and_in_diagnostics_until_one_is_gone(

@@ -6,7 +6,7 @@ from pathlib import Path
 import signal
 import sys
 
-from bridge_process import LoggedProcess, STARTED
+from bridge_process import STARTED
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
@@ -48,20 +48,14 @@ def installed():
 
 
 @pytest.fixture
-def launch(ros_domain, installed):
+def launch(start_program, installed):
     """Launches an installed file; ``launch(name, argument=value)``."""
-    processes = []
-
     def start(name, **arguments):
         words = [f'{key}:={value}' for key, value in arguments.items()]
-        processes.append(LoggedProcess([
+        return start_program([
             sys.executable, Path(__file__).with_name('launch_process.py'),
-            installed / 'launch' / name, *words], with_children=True))
-        return processes[-1]
-
-    yield start
-    for process in processes:
-        process.end()
+            installed / 'launch' / name, *words], with_children=True)
+    return start
 
 
 @pytest.fixture

@@ -11,7 +11,6 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from bridge_process import LoggedProcess
 from builtin_interfaces.msg import Time
 from changes import BRIDGE, listen_to_tf, pose_of, reload, replace, set_parameters
 from geometry_msgs.msg import (
@@ -185,18 +184,14 @@ def test_models_can_be_where_the_file_puts_them_at_first(follow, tf):
     assert fixed.isdisjoint({'cart/deck', 'arm/base', 'cart/crate/box'})
 
 
-def test_the_example_moves_the_part_of_the_work_cell(start_bridge, tf):
+def test_the_example_moves_the_part_of_the_work_cell(start_bridge, start_program, tf):
     start_bridge(
-        '--ros-args', '-p', f'sdf_file:={EXAMPLES / "work_cell.sdf"}', '-p',
-        f"model_pose_topics:=['{TOPIC}']").wait_until_started()
-    tracker = LoggedProcess([
+        sdf_file=EXAMPLES / 'work_cell.sdf', model_pose_topics=[TOPIC]).wait_until_started()
+    start_program([
         sys.executable, EXAMPLES / 'track_part.py', '--ros-args', '-p', 'frame:=robot/tool0'])
-    try:
-        tf.listener.wait(lambda: 'gear_housing/body' in tf.last, lambda: tf.last)
-        answer = tf.listener.call(LookupPose, f'{BRIDGE}/lookup_pose', LookupPose.Request(
-            frame='gear_housing', relative_to='robot/tool0'))
-    finally:
-        tracker.end()
+    tf.listener.wait(lambda: 'gear_housing/body' in tf.last, lambda: tf.last)
+    answer = tf.listener.call(LookupPose, f'{BRIDGE}/lookup_pose', LookupPose.Request(
+        frame='gear_housing', relative_to='robot/tool0'))
     position = answer.pose.pose.position
     assert math.hypot(position.x, position.y) == pytest.approx(0.1)
     assert position.z == pytest.approx(0.2)

@@ -14,7 +14,7 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from ament_index_python.packages import get_package_share_directory
-from bridge_process import LoggedProcess, STARTED
+from bridge_process import STARTED
 from changes import replace, world
 from command_line import executable_of_workspace
 from ros_domain import needs_fast_dds
@@ -114,21 +114,16 @@ def connected_namespaces(ros_domain):
 
 
 @pytest.fixture
-def start_on(hosts, monkeypatch):
+def start_on(hosts, start_program, monkeypatch):
     """Starts a process on one of the hosts; ``start_on(host, *command)``."""
     monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'SUBNET')
-    processes = []
 
     def start(host, *command):
         # Each host has its own shared memory.
-        processes.append(LoggedProcess([
+        return start_program([
             'ip', 'netns', 'exec', hosts[host], 'sh', '-c',
-            'mount -t tmpfs none /dev/shm && exec "$@"', 'sh', *command]))
-        return processes[-1]
-
-    yield start
-    for process in processes:
-        process.end()
+            'mount -t tmpfs none /dev/shm && exec "$@"', 'sh', *command])
+    return start
 
 
 @pytest.fixture

@@ -15,7 +15,7 @@ from tf2_msgs.msg import TFMessage
 
 
 def test_two_bridges_of_one_name_report_each_other(start_bridge, file):
-    bridges = [start_bridge('--ros-args', '-p', f'sdf_file:={file}') for _ in range(2)]
+    bridges = [start_bridge(sdf_file=file) for _ in range(2)]
     for bridge in bridges:
         line = bridge.wait_for_line('is also published on /tf_static')
         assert 'by "/sdf_pose_bridge", with the parent ' in line
@@ -24,7 +24,7 @@ def test_two_bridges_of_one_name_report_each_other(start_bridge, file):
 def test_a_bridge_listens_to_others_while_it_reads_a_file(
         start_bridge, tmp_path, start_listener):
     slow = SlowFile(tmp_path / 'slow.sdf', world(1))
-    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={slow.path}').wait_until_started()
+    bridge = start_bridge(sdf_file=slow.path).wait_until_started()
     listener = start_listener()
     slow.hold()
     answer = asked_to_reload(listener)
@@ -39,7 +39,7 @@ def test_a_bridge_listens_to_others_while_it_reads_a_file(
 
 def test_another_parent_on_tf_is_in_the_log_and_in_diagnostics_until_its_node_is_gone(
         start_bridge, file, start_listener):
-    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={file}').wait_until_started()
+    bridge = start_bridge(sdf_file=file).wait_until_started()
     listener, sender = start_listener(), start_listener()
     listener.listen_to_frames()
     listener.wait(lambda: listener.tf_messages, lambda: '/tf_static')

@@ -54,7 +54,7 @@ def shown_after(command, page=README):
 def bridge_of_work_cell(start_shared_bridge):
     with pytest.MonkeyPatch.context() as monkeypatch:
         monkeypatch.chdir(ROOT)
-        bridge = start_shared_bridge('--ros-args', '-p', 'sdf_file:=examples/work_cell.sdf')
+        bridge = start_shared_bridge(sdf_file='examples/work_cell.sdf')
         return bridge.wait_until_started()
 
 
@@ -115,7 +115,7 @@ def test_errors(start_bridge, tmp_path, monkeypatch, capsys):
     main(['check', 'broken.sdf'])
     (line,) = capsys.readouterr().out.splitlines()
     assert shown_after('$ sdf_pose check broken.sdf', ERRORS)[0] == line
-    bridge = start_bridge('--ros-args', '-p', 'sdf_file:=broken.sdf')
+    bridge = start_bridge(sdf_file='broken.sdf')
     assert bridge.wait_for_end() == 1
     assert bridge.lines[0].endswith(f'/{line}')
     (fatal, _) = shown_after(

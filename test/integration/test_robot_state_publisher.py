@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The executable that takes the place of robot_state_publisher in a launch file."""
 
+from functools import partial
+
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
@@ -41,8 +43,8 @@ robot_state_publisher:
 
 
 @pytest.fixture(name='start')
-def start_program(start_robot_state_publisher):
-    return start_robot_state_publisher
+def start_program(start_bridge):
+    return partial(start_bridge, program='robot_state_publisher')
 
 
 @pytest.fixture
@@ -88,7 +90,7 @@ def topics_of_node(listener):
 
 
 def test_the_node_has_the_topics_of_robot_state_publisher_and_no_other(start, listener):
-    start('--ros-args', '-p', f'robot_description:={URDF}').wait_until_started()
+    start(robot_description=URDF).wait_until_started()
     descriptions = []
     listener.node.create_subscription(
         String, '/robot_description', descriptions.append, latched(1))
@@ -124,13 +126,12 @@ def test_a_file_of_parameters_is_taken_with_all_its_names(start, listener, tmp_p
 
 
 def test_a_misspelt_parameter_is_reported(start, file):
-    program = start(file, '--ros-args', '-p', 'frame_prefx:=left/')
+    program = start(file, frame_prefx='left/')
     program.wait_for_line('there is no parameter "frame_prefx"')
 
 
 def test_sdformat_has_links_frames_and_sensors_and_its_joints_move(start, listener, joints, tf):
-    node = start(
-        '--ros-args', '-p', f'robot_description:={ARM}', '-p', 'frame_prefix:=/left/')
+    node = start(robot_description=ARM, frame_prefix='/left/')
     node.wait_for_line('Robot initialized')
     listener.wait(lambda: joints.send({'turn': 0.5}) and tf['/tf'], lambda: 'the first message')
     listener.wait(lambda: tf['/tf_static'], lambda: 'the fixed frames')

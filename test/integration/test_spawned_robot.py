@@ -10,21 +10,16 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 pytest.importorskip('tf2_ros', reason='needs tf2_ros, which is not installed')
 
-from bridge_process import LoggedProcess
-
 from sdf_pose_bridge.ros.transforms import transforms_from_parameters
 
 EXAMPLES = Path(__file__).resolve().parents[2] / 'examples'
 
 
-def test_the_example_publishes_all_frames_of_the_robot(start_listener):
+def test_the_example_publishes_all_frames_of_the_robot(start_program, start_listener):
     listener = start_listener()
     listener.listen_to_frames()
     file = EXAMPLES / 'mobile_robot.sdf'
-    spawner = LoggedProcess([sys.executable, EXAMPLES / 'spawned_robot.py', file, 'robot_1'])
-    try:
-        listener.wait(lambda: listener.tf_messages, lambda: spawner.lines)
-    finally:
-        spawner.end()
+    spawner = start_program([sys.executable, EXAMPLES / 'spawned_robot.py', file, 'robot_1'])
+    listener.wait(lambda: listener.tf_messages, lambda: spawner.lines)
     assert listener.tf_messages[-1].transforms == transforms_from_parameters(
         sdf_file=str(file), model_name='robot_1')

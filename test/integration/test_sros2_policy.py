@@ -20,8 +20,7 @@ def listener(start_shared_bridge, start_shared_listener, tmp_path_factory):
     path = tmp_path_factory.mktemp('policy') / 'cell.sdf'
     path.write_text(world(1), encoding='utf-8')
     start_shared_bridge(
-        '--ros-args', '-p', f'sdf_file:={path}', '-p', 'use_sim_time:=true',
-        '-p', 'allow_set_pose:=true').wait_until_started()
+        sdf_file=path, use_sim_time=True, allow_set_pose=True).wait_until_started()
     return start_shared_listener()
 
 

@@ -68,8 +68,7 @@ def test_every_frame_can_be_looked_up_from_every_other(
     frame_ids = [tree.root_frame, *tree.frame_ids]
     if not comes_late:
         buffer, listener = start_buffer()
-    bridge = start_bridge(
-        '--ros-args', '-p', f'sdf_file:={path}', '-p', 'anchor_models:=all')
+    bridge = start_bridge(sdf_file=path, anchor_models='all')
     if comes_late:
         bridge.wait_until_started()
         buffer, listener = start_buffer()
