@@ -6,6 +6,7 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 from pathlib import Path
+import re
 import time
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
@@ -58,11 +59,26 @@ def wait_for_x(listener, x, frame='crate/body'):
     listener.wait(lambda: last_x(listener, frame) == x, lambda: f'x = {x}')
 
 
+def asked(listener, service_type, node=BRIDGE, **fields):
+    """Call the service that has the name of its type; return the future answer."""
+    name = re.sub('(?<=[a-z])(?=[A-Z])', '_', service_type.__name__).lower()
+    return listener.ask(service_type, f'{node}/{name}', service_type.Request(**fields))
+
+
+def call(listener, service_type, **fields):
+    """Call that service of the bridge; return the answer."""
+    return listener.response(asked(listener, service_type, **fields))
+
+
+def parameter_value(listener, name):
+    (value,) = call(listener, GetParameters, names=[name]).values
+    return value
+
+
 def asked_to_set(listener, node=BRIDGE, **values):
     """Return the future answer to a call that sets parameters."""
-    request = SetParameters.Request(parameters=[
+    return asked(listener, SetParameters, node, parameters=[
         Parameter(name, value=value).to_parameter_msg() for name, value in values.items()])
-    return listener.ask(SetParameters, f'{node}/set_parameters', request)
 
 
 def results_of_setting(listener, node=BRIDGE, **values):
@@ -105,10 +121,8 @@ class SharedBridge:
     def __init__(self, process, listener):
         self._process = process
         self._listener = listener
-        names = listener.call(
-            ListParameters, f'{BRIDGE}/list_parameters', ListParameters.Request()).result.names
-        values = listener.call(
-            GetParameters, f'{BRIDGE}/get_parameters', GetParameters.Request(names=names)).values
+        names = call(listener, ListParameters).result.names
+        values = call(listener, GetParameters, names=names).values
         self._parameters = {
             name: ParameterMessage(name=name, value=value)
             for name, value in zip(names, values, strict=True)}
@@ -119,9 +133,8 @@ class SharedBridge:
         # A file that has just been written is read a second time.
         while time.time_ns() - file.stat().st_ctime_ns < 30_000_000:
             time.sleep(0.005)
-        request = SetParametersAtomically.Request(parameters=list(self._parameters.values()))
-        answer = self._listener.call(
-            SetParametersAtomically, f'{BRIDGE}/set_parameters_atomically', request)
+        answer = call(
+            self._listener, SetParametersAtomically, parameters=list(self._parameters.values()))
         assert answer.result.successful, answer.result.reason
         line = self._process.wait_for_line(f' of {file} with ')
         del self._process.lines[:self._process.lines.index(line)]
@@ -162,6 +175,6 @@ def usage_of(pid):
 
 def pose_of(tf, frame):
     """Return the position of a frame in the root, as the bridge looks it up."""
-    answer = tf.listener.call(LookupPose, f'{BRIDGE}/lookup_pose', LookupPose.Request(frame=frame))
+    answer = call(tf.listener, LookupPose, frame=frame)
     assert answer.success, answer.message
     return answer.pose.pose.position

@@ -9,9 +9,10 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 from changes import (
     asked_to_reload,
     asked_to_set,
-    BRIDGE,
+    call,
     last_x,
     Monitor,
+    parameter_value,
     set_parameters,
     wait_for_x,
     world,
@@ -19,7 +20,7 @@ from changes import (
 from diagnostic_msgs.msg import DiagnosticStatus
 from rcl_interfaces.msg import Parameter as ParameterMessage
 from rcl_interfaces.msg import ParameterType, ParameterValue
-from rcl_interfaces.srv import GetParameters, SetParameters
+from rcl_interfaces.srv import SetParameters
 from slow_file import SlowFile
 
 from sdf_pose_bridge_interfaces.srv import ConvertRotation, LookupPose
@@ -31,15 +32,10 @@ def make_slow_file(tmp_path):
 
 
 def assert_services_answer(listener):
-    answer = listener.call(
-        ConvertRotation, f'{BRIDGE}/convert_rotation', ConvertRotation.Request())
+    answer = call(listener, ConvertRotation)
     assert answer.success, answer.message
-    answer = listener.call(
-        LookupPose, f'{BRIDGE}/lookup_pose', LookupPose.Request(frame='crate::body'))
-    assert answer.pose.pose.position.x == 1.0
-    request = GetParameters.Request(names=['root_frame'])
-    (value,) = listener.call(GetParameters, f'{BRIDGE}/get_parameters', request).values
-    assert value.string_value == 'world'
+    assert call(listener, LookupPose, frame='crate::body').pose.pose.position.x == 1.0
+    assert parameter_value(listener, 'root_frame').string_value == 'world'
 
 
 def test_services_answer_and_diagnostics_go_on_while_a_parameter_has_a_file_read(slow, listener):
@@ -90,10 +86,7 @@ def test_an_empty_list_of_another_type_is_taken_for_a_list_of_strings(listener):
     set_parameters(listener, resource_paths=['x'])
     parameter = ParameterMessage(name='resource_paths', value=ParameterValue(
         type=ParameterType.PARAMETER_BYTE_ARRAY))
-    (result,) = listener.call(
-        SetParameters, f'{BRIDGE}/set_parameters', SetParameters.Request(parameters=[parameter])
-    ).results
+    (result,) = call(listener, SetParameters, parameters=[parameter]).results
     assert result.successful, result.reason
-    request = GetParameters.Request(names=['resource_paths'])
-    (value,) = listener.call(GetParameters, f'{BRIDGE}/get_parameters', request).values
-    assert value == ParameterValue(type=ParameterType.PARAMETER_STRING_ARRAY)
+    assert parameter_value(listener, 'resource_paths') == ParameterValue(
+        type=ParameterType.PARAMETER_STRING_ARRAY)

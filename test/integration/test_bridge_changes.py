@@ -10,6 +10,7 @@ from changes import (
     last_x,
     listen_to_tf,
     Monitor,
+    parameter_value,
     reason_for_refusal,
     reload,
     replace,
@@ -21,17 +22,10 @@ from changes import (
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import TransformStamped
 from listener import latched
-from rcl_interfaces.srv import GetParameters
 from sizes import size
 from tf2_msgs.msg import TFMessage
 
 FRAMES = ''.join(f'<frame name="f{number}"/>' for number in range(5000))
-
-
-def value_of(listener, name):
-    request = GetParameters.Request(names=[name])
-    (value,) = listener.call(GetParameters, '/sdf_pose_bridge/get_parameters', request).values
-    return value.string_value
 
 
 REFUSED = [
@@ -47,7 +41,7 @@ REFUSED = [
 def test_what_cannot_be_taken_is_answered_and_changes_nothing(bridge, listener):
     for values, reason in REFUSED:
         assert reason in reason_for_refusal(listener, **values)
-    assert value_of(listener, 'frame_prefix') == ''
+    assert parameter_value(listener, 'frame_prefix').string_value == ''
     Monitor(listener).wait_for(DiagnosticStatus.OK)
     assert len(listener.tf_messages) == 1
     assert not [line for line in bridge.lines if line.startswith('[ERROR]')]
@@ -68,7 +62,7 @@ def test_poses_are_given_in_the_frame_that_is_set(bridge, file, start_listener):
     wait_for_poses('world', desk=3.0, crate=1.0)
     assert 'no frame "dsk" to be the pose_frame; did you mean "desk"?' in (
         reason_for_refusal(listener, pose_frame='dsk'))
-    assert value_of(listener, 'pose_frame') == ''
+    assert parameter_value(listener, 'pose_frame').string_value == ''
     set_parameters(listener, pose_frame='desk')
     wait_for_poses('desk', desk=0.0, crate=-2.0)
 

@@ -8,7 +8,7 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from changes import BRIDGE, listen_to_tf, reason_for_refusal, wait_for_x
+from changes import BRIDGE, call, listen_to_tf, reason_for_refusal, wait_for_x
 from geometry_msgs.msg import PoseStamped
 from listener import JointPublisher
 import urdf_texts
@@ -43,8 +43,7 @@ def ask(listener, frame, x, frame_id='', *, dry_run=False):
     pose = PoseStamped()
     pose.header.frame_id = frame_id
     pose.pose.position.x = x
-    return listener.call(
-        SetPose, f'{BRIDGE}/set_pose', SetPose.Request(frame=frame, pose=pose, dry_run=dry_run))
+    return call(listener, SetPose, frame=frame, pose=pose, dry_run=dry_run)
 
 
 def test_measured_poses_go_into_the_files(
@@ -58,9 +57,7 @@ def test_measured_poses_go_into_the_files(
     def tool_y():
         # The first messages are lost, until the bridge has discovered the publisher.
         joints.send({'turn': pi / 2})
-        request = LookupPose.Request(frame='arm/tool')
-        return client.call(
-            LookupPose, f'{BRIDGE}/lookup_pose', request).pose.pose.position.y
+        return call(client, LookupPose, frame='arm/tool').pose.pose.position.y
 
     client.wait(lambda: abs(tool_y() - 1.0) < 1e-9, lambda: 'the tool at y = 1')
     answer = ask(client, 'fixture', 0.5, 'arm/tool')

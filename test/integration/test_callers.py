@@ -18,7 +18,9 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from changes import (
     BRIDGE,
+    call,
     listen_to_tf,
+    parameter_value,
     reload,
     replace,
     set_parameters,
@@ -112,9 +114,12 @@ rclpy.spin(node)
 """
 
 
-def test_whatever_is_asked_is_answered(bridge, start_listener):
-    listener = start_listener()
+@pytest.fixture
+def listener(bridge, start_listener):
+    return start_listener()
 
+
+def test_whatever_is_asked_is_answered(bridge, listener):
     @settings(max_examples=CALLS, database=None)
     @given(REQUESTS)
     def ask(request):
@@ -128,8 +133,7 @@ def test_whatever_is_asked_is_answered(bridge, start_listener):
     assert not [line for line in bridge.lines if 'internal error' in line]
 
 
-def test_many_clients_at_once_are_all_answered(bridge, start_listener):
-    listener = start_listener()
+def test_many_clients_at_once_are_all_answered(listener):
     # Every client receives the answers to all others, and by default keeps ten.
     clients = [
         listener.node.create_client(
@@ -156,8 +160,7 @@ def test_a_client_that_waits_for_the_node_is_answered(start_bridge, start_listen
 
 
 def test_a_client_that_leaves_before_the_answer_harms_nobody(
-        bridge, file, start_listener, start_program):
-    listener = start_listener()
+        file, listener, start_program):
     set_parameters(listener, watch=False)
     slow = SlowFile(file, world(1))
     slow.hold()
@@ -169,23 +172,22 @@ def test_a_client_that_leaves_before_the_answer_harms_nobody(
     assert reload(listener).success
 
 
-def test_many_numbers_in_one_call_are_converted(bridge, start_listener):
-    listener, name = start_listener(), f'{BRIDGE}/convert_poses'
+def test_many_numbers_in_one_call_are_converted(listener):
     row = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.5, 2.0, -3.0, 1.0]
-    request = ConvertPoses.Request(from_format='franka_matrix', to_format='sdf_quat_xyzw')
-    listener.call(ConvertPoses, name, request)  # a first call is repeated if it takes long
-    request.values = array.array('d', row) * (NUMBERS // len(row))
-    answer = listener.call(ConvertPoses, name, request)
+    # A first call is repeated if it takes long.
+    for times in (0, NUMBERS // len(row)):
+        answer = call(
+            listener, ConvertPoses, from_format='franka_matrix', to_format='sdf_quat_xyzw',
+            values=array.array('d', row) * times)
     assert answer.success, answer.message
     assert answer.values == array.array('d', [0.5, 2.0, -3.0, 0.0, 0.0, 0.0, 1.0]) * (
         NUMBERS // len(row))
 
 
-def test_more_numbers_than_a_call_can_have_are_refused(bridge, start_listener):
-    request = ConvertPoses.Request(
-        from_format='sdf_rpy', to_format='sdf_quat_xyzw',
+def test_more_numbers_than_a_call_can_have_are_refused(listener):
+    answer = call(
+        listener, ConvertPoses, from_format='sdf_rpy', to_format='sdf_quat_xyzw',
         values=array.array('d', [0.0]) * 7_000_000)
-    answer = start_listener().call(ConvertPoses, f'{BRIDGE}/convert_poses', request)
     assert not answer.success
     assert answer.message == 'values has 7000000 numbers; a call can have at most 1000000'
 
@@ -199,16 +201,13 @@ def value_of(**fields):
         **fields)
 
 
-def test_very_many_values_for_a_parameter_are_refused_in_one_sentence(bridge, start_listener):
-    listener = start_listener()
+def test_very_many_values_for_a_parameter_are_refused_in_one_sentence(listener):
     # Of a message of many megabytes the middleware may lose pieces, and repeat them after 3 s.
     parameters = [Parameter(
         name='sdf_file', value=value_of(integer_array_value=array.array('q', [7]) * 50_000))]
     parameters += [
         Parameter(name='publish_rate', value=value_of(double_value=0.0)) for _ in range(999)]
-    results = listener.call(
-        SetParameters, f'{BRIDGE}/set_parameters', SetParameters.Request(parameters=parameters)
-    ).results
+    results = call(listener, SetParameters, parameters=parameters).results
     assert len(results) == 1000
     assert not any(result.successful for result in results)
     assert results[0].reason == (
@@ -216,10 +215,9 @@ def test_very_many_values_for_a_parameter_are_refused_in_one_sentence(bridge, st
     assert sum(len(result.reason) for result in results) < 100_000
 
 
-def test_more_parameters_than_a_call_can_set_get_short_results(bridge, start_listener):
+def test_more_parameters_than_a_call_can_set_get_short_results(listener):
     parameters = [Parameter(name='watch', value=value_of(bool_value=True)) for _ in range(20_000)]
-    answer = start_listener().call(
-        SetParameters, f'{BRIDGE}/set_parameters', SetParameters.Request(parameters=parameters))
+    answer = call(listener, SetParameters, parameters=parameters)
     assert answer.results[0].reason == (
         'a call can set at most 1000 parameters, and this one has 20000')
     assert answer.results[-1].reason == 'the first result of this answer says why'
@@ -233,25 +231,16 @@ def test_a_large_value_is_not_repeated(start_bridge, start_listener, tmp_path):
     start_bridge('--ros-args', '--params-file', path).wait_until_started()
     listener = start_listener()
     name = 'robot_description'
-    (value,) = listener.call(
-        GetParameters, f'{BRIDGE}/get_parameters', GetParameters.Request(names=[name])).values
-    assert value.string_value == text
-    assert listener.call(
-        GetParameters, f'{BRIDGE}/get_parameters', GetParameters.Request(names=[name] * 1000)
-    ).values == []
+    assert parameter_value(listener, name).string_value == text
+    assert call(listener, GetParameters, names=[name] * 1000).values == []
 
 
-def test_what_is_searched_among_many_long_names_is_answered(bridge, file, start_listener):
+def test_what_is_searched_among_many_long_names_is_answered(bridge, file, listener):
     frames = ''.join(f'<frame name="{LONG_NAME}{number}"/>' for number in range(20_000))
     replace(file, world(1, extra=frames))
     bridge.wait_for_line('publishing 20002 frames')
-    listener = start_listener()
-    answer = listener.call(
-        LookupPose, f'{BRIDGE}/lookup_pose', LookupPose.Request(frame=f'{LONG_NAME}x'))
+    answer = call(listener, LookupPose, frame=f'{LONG_NAME}x')
     assert '; did you mean ' in answer.message
     patterns = [f'*{number}{"a" * 200}b' for number in range(1000)]
-    request = SetParameters.Request(parameters=[
-        Parameter(name='pose_topics', value=value_of(string_array_value=patterns))])
-    answer = listener.call(SetParameters, f'{BRIDGE}/set_parameters', request)
-    assert answer.results[0].successful
+    set_parameters(listener, pose_topics=patterns)
     bridge.wait_for_line('takes too long')

@@ -13,6 +13,7 @@ from builtin_interfaces.msg import Time
 from changes import (
     asked_to_reload,
     BRIDGE,
+    call,
     listen_to_tf,
     Monitor,
     pose_of,
@@ -114,8 +115,7 @@ def test_joints_that_no_message_has_named_are_nowhere_until_their_driver_is_up(
     assert tf.last.keys() == {'upper'}
     assert not transforms.keys() & {'slide', 'finger'}
     assert poses.keys() == {'base', 'upper'}
-    answer = tf.listener.call(
-        LookupPose, f'{BRIDGE}/lookup_pose', LookupPose.Request(frame='tool', relative_to='base'))
+    answer = call(tf.listener, LookupPose, frame='tool', relative_to='base')
     assert (answer.success, answer.message) == (
         False, 'the pose depends on joint "lift", which has not been reported yet')
     assert pose_of(tf, 'upper').z == 1.0

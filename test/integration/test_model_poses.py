@@ -12,7 +12,7 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from builtin_interfaces.msg import Time
-from changes import BRIDGE, listen_to_tf, pose_of, reload, replace, set_parameters
+from changes import call, listen_to_tf, pose_of, reload, replace, set_parameters
 from geometry_msgs.msg import (
     PoseStamped,
     PoseWithCovarianceStamped,
@@ -84,8 +84,7 @@ def test_transforms_name_the_models_that_they_move(follow, tf, tracker):
 def test_a_tracker_may_come_late_stop_and_come_back_with_another_type(follow, tf, tracker):
     bridge = follow()
     bridge.wait_for_line('no pose has come yet for 3 models, for example "cart"')
-    answer = tf.listener.call(
-        LookupPose, f'{BRIDGE}/lookup_pose', LookupPose.Request(frame='cart/deck'))
+    answer = call(tf.listener, LookupPose, frame='cart/deck')
     assert 'depends on the pose of model "cart", which has not been reported' in answer.message
     tracker.move(3.0)
     tracker.stop()
@@ -190,8 +189,7 @@ def test_the_example_moves_the_part_of_the_work_cell(start_bridge, start_program
     start_program([
         sys.executable, EXAMPLES / 'track_part.py', '--ros-args', '-p', 'frame:=robot/tool0'])
     tf.listener.wait(lambda: 'gear_housing/body' in tf.last, lambda: tf.last)
-    answer = tf.listener.call(LookupPose, f'{BRIDGE}/lookup_pose', LookupPose.Request(
-        frame='gear_housing', relative_to='robot/tool0'))
+    answer = call(tf.listener, LookupPose, frame='gear_housing', relative_to='robot/tool0')
     position = answer.pose.pose.position
     assert math.hypot(position.x, position.y) == pytest.approx(0.1)
     assert position.z == pytest.approx(0.2)
