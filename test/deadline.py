@@ -18,3 +18,8 @@ def wait_until(is_true, step=lambda: time.sleep(0.01), what=lambda: 'it'):
     while not is_true():
         assert time.monotonic() < ends_at, f'waited in vain for {what()}'
         step()
+
+
+def spin_until(executor, is_true, what=lambda: 'it'):
+    """Run callbacks of an executor until a condition is true; as :func:`wait_until`."""
+    wait_until(is_true, lambda: executor.spin_once(timeout_sec=0.01), what)

@@ -60,11 +60,11 @@ def start_program(ros_domain):
 
 
 @pytest.fixture
-def file(tmp_path):
-    """File of a small world, which a test may change."""
+def file(request, tmp_path):
+    """File with ``FILE_TEXT`` of the module, or with a small world; a test may change it."""
     from changes import world
     path = tmp_path / 'cell.sdf'
-    path.write_text(world(1), encoding='utf-8')
+    path.write_text(getattr(request.module, 'FILE_TEXT', world(1)), encoding='utf-8')
     return path
 
 

@@ -24,7 +24,6 @@ from sdf_pose_bridge.ros.middleware import PROFILES
     if os.environ['ROS_DISTRO'] in each.distros and other is not each]
 """Setting the variable keeps the node from using its profile; Fast DDS does not read it."""
 
-GOOD = '<sdf version="1.10"><model name="m"><link name="l"/></model></sdf>'
 BAD = """\
 <sdf version="1.10">
   <model name="m">
@@ -61,17 +60,10 @@ _spin_until_signal(executor, node, loader)
 STOP_SIGNALS = pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 
 
-@pytest.fixture
-def path(tmp_path):
-    path = tmp_path / 'scene.sdf'
-    path.write_text(GOOD, encoding='utf-8')
-    return path
-
-
 @pytest.fixture(name='start')
-def start_on_file(start_bridge, path):
+def start_on_file(start_bridge, file):
     """Starts a bridge on the file; ``start(*arguments, **parameters)``."""
-    return partial(start_bridge, sdf_file=path)
+    return partial(start_bridge, sdf_file=file)
 
 
 def assert_ended_well(bridge):

@@ -24,13 +24,7 @@ def crate(*visuals):
 
 BOX = ('side', '<box><size>1 2 3</size></box>')
 BALL = ('ball', '<sphere><radius>2</radius></sphere>')
-
-
-@pytest.fixture
-def file(tmp_path):
-    path = tmp_path / 'crate.sdf'
-    path.write_text(crate(BOX), encoding='utf-8')
-    return path
+FILE_TEXT = crate(BOX)
 
 
 @pytest.fixture

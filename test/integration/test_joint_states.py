@@ -42,6 +42,7 @@ ARM = """<sdf version="1.11"><model name="arm">
   <axis><xyz>1 0 0</xyz><mimic joint="lift"><multiplier>2</multiplier><offset>0</offset>
   <reference>0</reference></mimic></axis></joint>
 </model></sdf>"""
+FILE_TEXT = ARM.format(tool=1)
 FLOODING = """
 import time
 import rclpy
@@ -62,13 +63,6 @@ while True:
 """A program whose messages all have other names, and come faster than they can be taken."""
 
 MOVED = {'upper', 'slide', 'finger'}
-
-
-@pytest.fixture(name='file')
-def write_file(tmp_path):
-    path = tmp_path / 'arm.sdf'
-    path.write_text(ARM.format(tool=1), encoding='utf-8')
-    return path
 
 
 @pytest.fixture(name='follow')

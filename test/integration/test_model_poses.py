@@ -27,13 +27,7 @@ from sdf_pose_bridge_interfaces.srv import LookupPose
 
 EXAMPLES = Path(__file__).resolve().parents[2] / 'examples'
 TOPIC = '/tracker/{model}/pose'
-
-
-@pytest.fixture(name='file')
-def write_file(tmp_path):
-    path = tmp_path / 'shop.sdf'
-    path.write_text(WORLD.format(height=0.5), encoding='utf-8')
-    return path
+FILE_TEXT = WORLD.format(height=0.5)
 
 
 @pytest.fixture(name='tracker')

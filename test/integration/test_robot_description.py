@@ -25,11 +25,7 @@ def model(x):
         f'<link name="body"><pose>{x} 0 0 0 0 0</pose></link></model></sdf>')
 
 
-@pytest.fixture(name='file')
-def write_file(tmp_path):
-    path = tmp_path / 'crate.sdf'
-    path.write_text(model(1), encoding='utf-8')
-    return path
+FILE_TEXT = model(1)
 
 
 def texts_of(listener):

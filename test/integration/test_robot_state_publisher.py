@@ -26,6 +26,7 @@ URDF = urdf.robot(
         'follow', 'upper', 'thumb', 'continuous', MOVING + '<mimic joint="grip" multiplier="2"/>')
     + urdf.joint('end', 'finger', 'tip', 'fixed', urdf.origin('0 0 1'))
     + urdf.gazebo('<sensor name="imu" type="imu"/>', 'finger'))
+FILE_TEXT = URDF
 ARM = """<sdf version="1.11"><model name="arm"><link name="base">
 <sensor name="eye" type="camera"/></link><link name="upper"/><frame name="f"/>
 <joint name="turn" type="revolute"><parent>base</parent><child>upper</child>
@@ -74,13 +75,6 @@ def parents_in(messages):
 
 def wait_for_stamp(listener, tf, sec):
     listener.wait(lambda: tf['/tf'][-1].transforms[0].header.stamp.sec == sec, lambda: tf)
-
-
-@pytest.fixture(name='file')
-def write_file(tmp_path):
-    path = tmp_path / 'arm.urdf'
-    path.write_text(URDF, encoding='utf-8')
-    return path
 
 
 def topics_of_node(listener):

@@ -12,15 +12,10 @@ from simulation_interfaces.msg import Result
 from simulator import SIMULATOR, Simulator
 from tracker import Tracker, WORLD
 
+FILE_TEXT = WORLD.format(height=0.5)
+
 # The bridge may stop asking between a call and its answer.
 pytestmark = pytest.mark.filterwarnings('ignore:failed to send response:RuntimeWarning')
-
-@pytest.fixture(name='file')
-def write_file(tmp_path):
-    path = tmp_path / 'shop.sdf'
-    path.write_text(WORLD.format(height=0.5), encoding='utf-8')
-    return path
-
 
 @pytest.mark.usefixtures('bridge')
 def test_a_simulator_is_asked_for_the_models_that_can_move(tf):

@@ -6,7 +6,7 @@ import concurrent.futures
 import math
 import threading
 
-from deadline import DEADLINE_S, wait_until
+from deadline import DEADLINE_S, spin_until, wait_until
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
@@ -149,8 +149,7 @@ class Following:
 
     def wait(self, condition):
         """Run callbacks until a condition is true."""
-        wait_until(
-            condition, lambda: self._executor.spin_once(timeout_sec=0.01), lambda: self.found)
+        spin_until(self._executor, condition, lambda: self.found)
 
     def wait_until_taken(self, position):
         """Wait until the thread has taken the message that has a position."""

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Publishers of a real node: which are made, shared, kept and destroyed."""
 
-from deadline import wait_until
+from deadline import spin_until, wait_until
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
@@ -94,7 +94,7 @@ def test_a_publisher_that_is_switched_off_leaves_no_message(node):
         found_publishers(node, '/text', int(bool(text)))
         if text:
             sent.append(text)
-            wait_until(
-                lambda: len(received) == len(sent) and publisher.has_listeners(),
-                lambda: node.executor.spin_once(timeout_sec=0.1))
+            spin_until(
+                node.executor,
+                lambda: len(received) == len(sent) and publisher.has_listeners())
     assert received == sent

@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from deadline import DEADLINE_S, wait_until
+from deadline import DEADLINE_S, spin_until
 from geometry_msgs.msg import PoseStamped
 import numpy as np
 from rclpy.clock import Clock
@@ -212,20 +212,17 @@ def test_large_requests_wait_in_the_middleware_until_it_is_their_turn(
         ConvertPoses, '/bridge/convert_poses', qos_profile=services.SERVICE_QOS)
     other_client = caller.create_client(ConvertRotation, '/bridge/convert_rotation')
 
-    def spin_until(condition):
-        wait_until(condition, lambda: executor.spin_once(timeout_sec=0.01))
-
-    spin_until(lambda: client.service_is_ready() and other_client.service_is_ready())
+    spin_until(executor, lambda: client.service_is_ready() and other_client.service_is_ready())
     request = ConvertPoses.Request(values=array.array('d', bytes(8 * services.FEW_NUMBERS + 8)))
     futures = [client.call_async(request) for _ in range(30)]  # by default, ten would wait
 
-    spin_until(lambda: taken)
+    spin_until(executor, lambda: taken)
     for _ in range(3):
         later = other_client.call_async(ConvertRotation.Request())
-        spin_until(later.done)
+        spin_until(executor, later.done)
     assert len(taken) == 1
     goes_on.set()
-    spin_until(lambda: all(future.done() for future in futures))
+    spin_until(executor, lambda: all(future.done() for future in futures))
     assert all(future.result().success for future in futures)
 
 

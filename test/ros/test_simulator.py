@@ -5,7 +5,7 @@
 import sys
 from types import SimpleNamespace
 
-from deadline import wait_until
+from deadline import spin_until
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
@@ -63,14 +63,10 @@ def make_service(node, make_node):
     return start
 
 
-def spin_until(node, condition):
-    wait_until(condition, lambda: node.executor.spin_once(timeout_sec=0.01))
-
-
 def spin_as_long_as_many_calls(node):
     ticks = []
     timer = node.create_timer(0.01, lambda: ticks.append('tick'))
-    spin_until(node, lambda: len(ticks) == 20)
+    spin_until(node.executor, lambda: len(ticks) == 20)
     node.destroy_timer(timer)
 
 
@@ -101,14 +97,14 @@ def test_a_call_without_an_answer_is_followed_by_a_second_one(
     monkeypatch.setattr(module, 'SECOND_CALL_S', 0.1)
     monkeypatch.setattr(Service, 'send_response', lambda *_: None)
     requests = service(['a'], 1)
-    spin_until(node, lambda: len(requests) > 1)
+    spin_until(node.executor, lambda: len(requests) > 1)
     spin_as_long_as_many_calls(node)
     assert len(requests) == 2
     monkeypatch.setattr(module, 'LONGEST_CALL_S', 0.0)
-    spin_until(node, lambda: len(requests) > 2)
+    spin_until(node.executor, lambda: len(requests) > 2)
     assert simulator._problem.startswith('no answer in')
     monkeypatch.undo()
-    spin_until(node, lambda: simulator.has_answers)
+    spin_until(node.executor, lambda: simulator.has_answers)
     assert not simulator._problem
 
 
@@ -124,21 +120,21 @@ def test_a_wrong_number_is_told(node, simulator, service, names, states, line, c
         log.append(capfd.readouterr().err)
         return line.format(SERVICE) in log[-1]
 
-    spin_until(node, is_told)
+    spin_until(node.executor, is_told)
     assert log[-1].count(line.format(SERVICE)) == 1
     assert simulator.has_answers == (len(names) == states)
     if len(names) == states:
         spin_as_long_as_many_calls(node)
         assert len(requests) == 1
         follow(simulator, 'a', 'b')
-        spin_until(node, lambda: len(requests) > 1)
+        spin_until(node.executor, lambda: len(requests) > 1)
 
 
 def test_answers_that_take_long_are_asked_for_less_often(
         node, simulator, service, monkeypatch, capfd):
     monkeypatch.setattr(module, 'LARGEST_SHARE', 1e-2)
     service(['a'], 1)
-    spin_until(node, lambda: len(simulator._costs_s) == module._COSTS)
+    spin_until(node.executor, lambda: len(simulator._costs_s) == module._COSTS)
     log = capfd.readouterr().err
     assert log.count('times a second instead of 100, as an answer with 1 pose takes') == 1
 

@@ -4,7 +4,7 @@
 
 import math
 
-from deadline import wait_until
+from deadline import spin_until
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
@@ -39,15 +39,11 @@ def test_shapes_of_the_scene_before_are_no_longer_read_and_not_shown(
             QoSProfile(depth=9, durability=DurabilityPolicy.TRANSIENT_LOCAL))
 
     subscription = listen()
-
-    def spin_until(condition):
-        wait_until(condition, lambda: executor.spin_once(timeout_sec=0.01))
-
-    spin_until(lambda: visuals.go_on() < math.inf)
+    spin_until(executor, lambda: visuals.go_on() < math.inf)
     listener.destroy_subscription(subscription)
-    spin_until(lambda: not node.count_subscribers('/bridge/visuals'))
+    spin_until(executor, lambda: not node.count_subscribers('/bridge/visuals'))
     visuals.replace(new)
     assert visuals.go_on() == math.inf, 'nobody listens'
     listen()
-    spin_until(lambda: visuals.go_on() == math.inf and found)
+    spin_until(executor, lambda: visuals.go_on() == math.inf and found)
     assert [each.markers[1].type for each in found] == [Marker.SPHERE]
