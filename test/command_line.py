@@ -7,9 +7,9 @@ import os
 from pathlib import Path
 import sys
 
+from folders import ROOT
 import pytest
 
-ROOT = Path(__file__).resolve().parents[1]
 AS_MODULE = [sys.executable, '-m', 'sdf_pose_bridge']
 
 

@@ -2,16 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The example of clients: it shows topics and poses, and calls every service."""
 
-from pathlib import Path
 import subprocess
 import sys
 
 from deadline import DEADLINE_S
+from folders import EXAMPLES
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
-
-EXAMPLES = Path(__file__).resolve().parents[2] / 'examples'
 
 
 @pytest.fixture(name='ask', scope='module')

@@ -2,17 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """The clients in Python and in C++ that users copy from: both log what the bridge answers."""
 
-from pathlib import Path
 import shutil
 import signal
 import subprocess
 import sys
 
+from folders import EXAMPLES
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
-
-EXAMPLES = Path(__file__).resolve().parents[2] / 'examples'
 
 
 @pytest.fixture(scope='module')

@@ -4,9 +4,9 @@
 
 import itertools
 import math
-from pathlib import Path
 import sys
 
+from folders import EXAMPLES
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
@@ -25,7 +25,6 @@ from tracker import CART, stamped, Tracker, WORLD
 
 from sdf_pose_bridge_interfaces.srv import LookupPose
 
-EXAMPLES = Path(__file__).resolve().parents[2] / 'examples'
 TOPIC = '/tracker/{model}/pose'
 FILE_TEXT = WORLD.format(height=0.5)
 

@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the README shows is what is printed, as far as that is the same on every machine."""
 
-from pathlib import Path
 import re
 import subprocess
 import sys
 
 from deadline import DEADLINE_S
+from folders import ROOT
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
@@ -15,7 +15,6 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 from sdf_pose_bridge.cli.main import main
 from sdf_pose_bridge_interfaces.srv import ConvertRotation
 
-ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / 'README.md').read_text(encoding='utf-8')
 ROS_INTERFACE = (ROOT / 'docs/ros_interface.md').read_text(encoding='utf-8')
 COMMAND_LINE = (ROOT / 'docs/command_line.md').read_text(encoding='utf-8')

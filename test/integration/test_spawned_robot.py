@@ -2,17 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """The example of a node that publishes the frames of a robot by itself."""
 
-from pathlib import Path
 import sys
 
+from folders import EXAMPLES
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 pytest.importorskip('tf2_ros', reason='needs tf2_ros, which is not installed')
 
 from sdf_pose_bridge.ros.transforms import transforms_from_parameters
-
-EXAMPLES = Path(__file__).resolve().parents[2] / 'examples'
 
 
 def test_the_example_publishes_all_frames_of_the_robot(start_program, start_listener):

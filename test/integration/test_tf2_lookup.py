@@ -7,8 +7,8 @@ tf2 composes the transforms; what it finds is compared with the poses that the c
 """
 
 import itertools
-from pathlib import Path
 
+from folders import EXAMPLES
 from matrices import assert_same_pose, matrix_from_pose
 import pytest
 
@@ -22,8 +22,6 @@ import sdf_pose_bridge
 from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
-
-EXAMPLES = Path(__file__).resolve().parents[2] / 'examples'
 
 
 @pytest.fixture

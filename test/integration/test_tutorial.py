@@ -6,12 +6,13 @@ from pathlib import Path
 import re
 import shlex
 
+from folders import ROOT
 import pytest
 
 from sdf_pose_bridge.cli import view
 from sdf_pose_bridge.cli.main import main
 
-TUTORIAL = Path(__file__).resolve().parents[2] / 'docs/tutorial.md'
+TUTORIAL = ROOT / 'docs/tutorial.md'
 PICTURED = TUTORIAL.parent / 'pictures/tutorial'
 BLOCK = re.compile(r'^```(?P<kind>.*)\n(?::caption: (?P<caption>.*)\n\n)?(?P<text>(?:.*\n)*?)```$',
                    re.M)

@@ -2,16 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The executable without ROS around it: what is missing is said in one sentence."""
 
-from pathlib import Path
 import subprocess
 import sys
 
 from deadline import DEADLINE_S
+from folders import ROOT
 import pytest
 
 from sdf_pose_bridge.ros.bridge import LINK_COMMAND, sentence_from_import_error
-
-ROOT = Path(__file__).resolve().parents[2]
 
 
 def run_bridge_without(module):

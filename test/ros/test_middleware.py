@@ -5,6 +5,7 @@
 from pathlib import Path
 import xml.etree.ElementTree as ET
 
+from folders import ROOT
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
@@ -12,7 +13,6 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 from sdf_pose_bridge.ros import middleware
 from sdf_pose_bridge.ros.middleware import Profile, PROFILES, use_profile
 
-ROOT = Path(__file__).resolve().parents[2]
 JAZZY = {'ROS_DISTRO': 'jazzy'}
 FAST_DDS = [profile for profile in PROFILES if '' in profile.middlewares]
 BY_DISTRO = {distro: profile for profile in FAST_DDS for distro in profile.distros}

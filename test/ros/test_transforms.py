@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Transforms of a file as messages, without the node."""
 
-from pathlib import Path
 
 import pytest
 
@@ -15,7 +14,6 @@ from sdf_pose_bridge.errors import AddressError
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.ros.transforms import transforms_from_parameters
 
-EXAMPLES = Path(__file__).resolve().parents[2] / 'examples'
 ROBOT = model_file(
     '<link name="l"/><frame name="f"><pose degrees="true">1 2 3 180 0 0</pose></frame>')
 
