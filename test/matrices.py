@@ -38,11 +38,15 @@ def matrix_from_pose(pose):
     return matrix
 
 
+def assert_close(found, expected, tolerance=1e-9, name=''):
+    """Check numbers, with an absolute tolerance."""
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=tolerance, err_msg=name)
+
+
 def assert_same_pose(pose, matrix, tolerance=1e-9, *, name=''):
     """Check a pose against a matrix, and that its quaternion x y z w is unit with w >= 0."""
     quaternion = np.array(pose[3:])
     assert abs(np.linalg.norm(quaternion) - 1.0) < 1e-12, name
     assert quaternion[3] >= 0.0, name
     scale = max(1.0, float(np.abs(matrix[:3, 3]).max()))
-    np.testing.assert_allclose(
-        matrix_from_pose(pose), matrix, rtol=0.0, atol=tolerance * scale, err_msg=name)
+    assert_close(matrix_from_pose(pose), matrix, tolerance * scale, name)

@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Short SDF texts for tests, and what is wrong with them."""
 
-import numpy as np
+from matrices import assert_close
 import pytest
 
-import sdf_pose_bridge
+from sdf_pose_bridge import load, load_text, SdfError
 from sdf_pose_bridge.sdformat.grammar import Kind
 
 TYPES = {'joint': 'fixed', 'sensor': 'camera', 'light': 'point', 'particle_emitter': 'point'}
@@ -23,6 +23,9 @@ def model_file(content, *, attributes='', version='1.9'):
 def world_file(content, *, version='1.10'):
     """Put content into the one world, ``w``, of a file."""
     return f'<sdf version="{version}"><world name="w">{content}</world></sdf>'
+
+
+INCLUDES_LEAF = world_file('<include><uri>leaf.sdf</uri></include>')
 
 
 def link_with(content):
@@ -65,16 +68,28 @@ def write_files(folder, **texts):
 
 def errors_of(text):
     """Load a text that must be refused; return all its errors."""
-    with pytest.raises(sdf_pose_bridge.SdfError) as caught:
-        sdf_pose_bridge.load_text(text, 'file.sdf')
+    with pytest.raises(SdfError) as caught:
+        load_text(text, 'file.sdf')
     return caught.value.errors
 
 
 def errors_of_file(path, **options):
     """Load a file that must be refused; return all its errors."""
-    with pytest.raises(sdf_pose_bridge.SdfError) as caught:
-        sdf_pose_bridge.load(path, **options)
+    with pytest.raises(SdfError) as caught:
+        load(path, **options)
     return caught.value.errors
+
+
+def scene_from_files(folder, **texts):
+    """Write files, and load ``main.sdf``."""
+    write_files(folder, **texts)
+    return load(folder / 'main.sdf')
+
+
+def errors_of_files(folder, **texts):
+    """Write files, and load ``main.sdf``, which must be refused; return all its errors."""
+    write_files(folder, **texts)
+    return errors_of_file(folder / 'main.sdf')
 
 
 def codes_of(text):
@@ -100,4 +115,4 @@ def warning_codes(scene):
 
 def assert_at(scene, name, expected):
     """Check the pose of an element: as many of x y z, qx qy qz qw as are given."""
-    np.testing.assert_allclose(scene.pose(name)[:len(expected)], expected, atol=1e-12)
+    assert_close(scene.pose(name)[:len(expected)], expected, 1e-12)

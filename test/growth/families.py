@@ -12,6 +12,9 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 
+from sdf_texts import LINK, model_file, world_file
+import urdf_texts as urdf
+
 Files = Mapping[str, str]
 """Texts by path; ``scene.sdf`` is loaded, and ``fuel`` is the cache of Gazebo Fuel."""
 
@@ -33,9 +36,8 @@ def nested(n: int, begin: str, inside: str, end: str = '</model>') -> str:
 
 
 def model(text: str, attributes: str = '', version: str = '1.9') -> str:
-    """Return a file of one model."""
-    return (f'<sdf version="{version}"><model name="top" {attributes}><link name="base"/>{text}'
-            '</model></sdf>')
+    """Return a file of one model, which has a link."""
+    return model_file(f'<link name="base"/>{text}', attributes=attributes, version=version)
 
 
 def include(text: str = '', attributes: str = '', uri: str = 'part.sdf') -> str:
@@ -43,28 +45,24 @@ def include(text: str = '', attributes: str = '', uri: str = 'part.sdf') -> str:
     return f'<include {attributes}><uri>{uri}</uri>{text}</include>'
 
 
-def scene(text: str, version: str = '1.10') -> Files:
-    """Return a file of one world."""
-    return {'scene.sdf': f'<sdf version="{version}"><world name="w">{text}</world></sdf>'}
-
-
-def params(text: str, part: str) -> Files:
+def params(text: str) -> str:
     """Return an include with parameters."""
-    return {**scene(include(f'<experimental:params>{text}</experimental:params>')),
-            'part.sdf': model(part)}
+    return include(f'<experimental:params>{text}</experimental:params>')
 
 
-def robot(text: str, name: str = 'l0') -> Files:
-    """Return a robot in URDF; its root, which the text knows as l0, may have another name."""
-    return {'scene.sdf': f'<robot name="r"><link name="l0">{MASS}</link>{text}</robot>'.replace(
-        '"l0"', f'"{name}"')}
+def robot(text: str) -> str:
+    """Return a robot in URDF, whose root is ``l0``."""
+    return urdf.robot(urdf.link('l0') + text)
 
 
-def urdf_chain(n: int, joint_type: str) -> str:
-    """Return a chain of links from l0 to ln."""
-    return each(n, (
-        f'<link name="l+">{MASS}</link><joint name="j#" type="{joint_type}"><origin xyz="0 0 1"/>'
-        '<parent link="l#"/><child link="l+"/></joint>'))
+def file_from_text(n: int, text: str) -> Files:
+    """Return the file that is loaded."""
+    return {'scene.sdf': each(n, text)}
+
+
+def included_files(n: int, world: str, part: str) -> Files:
+    """Return a world that includes a model, with their contents."""
+    return {'scene.sdf': world_file(each(n, world)), 'part.sdf': model(each(n, part))}
 
 
 def fuel(n: int, what: str = 'models') -> Files:
@@ -85,22 +83,23 @@ def deep_placements(n: int) -> str:
     return text
 
 
-LINK = '<link name="l"/>'
 POSE = '<pose>1 2 3 0.1 0.2 0.3</pose>'
 MERGE = 'merge="true"'
 NAMED = include('<name>m#</name>')
 MERGED = f'<model name="m#">{include("<name>n#</name>", MERGE)}</model>'
 BOX = '<geometry><box><size>1 1 1</size></box></geometry>'
 AUTO = '<inertial auto="true"/>'
-SPHERE = '<visual><geometry><sphere radius="1"/></geometry></visual>'
-MASS = ('<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
-        '</inertial>')
+SPHERE = urdf.shape('visual')
 JOINT = ('<joint name="j{}" type="revolute"><parent>{}</parent><child>{}</child>{}</joint>')
 MIMIC = '<axis><mimic joint="jq#"/></axis>'
-URDF_LINK = (f'<link name="s#">{MASS}</link><joint name="j#" type="fixed">'
-             '<parent link="{}"/><child link="s#"/></joint>')
+URDF_CHAIN = urdf.link('l+') + urdf.joint('j#', 'l#', 'l+', 'fixed', urdf.origin('0 0 1'))
+URDF_LINK = urdf.link('s#') + urdf.joint('j#', '{}', 's#')
+MOVING_CHAIN = URDF_CHAIN.replace('fixed', 'continuous')
 FLAG = '<use_parent_model_frame>1</use_parent_model_frame>'
-UNKNOWN_ID = '<link element_id="none#" action="remove"/>'
+UNKNOWN_IDS = params('|<link element_id="none#" action="remove"/>|')
+MISSING = include(uri='none.sdf')
+NAMED_MISSING = include('<name>a0</name>', uri='none.sdf')
+SCOPES = 'a::' * 240
 FUEL = 'https://fuel.gazebosim.org/1.0/Owner/models/M#'
 DEEP = f'<model name="n#">{LINK}'
 PATH = '::'.join(f'n{number}' for number in range(200))
@@ -122,7 +121,7 @@ REPEATED = {
     'unknown references': '<frame name="k#" attached_to="none#"/>',
     'unknown references of visuals':
         '<link name="uv">|<visual name="v#"><pose relative_to="none#"/></visual>|</link>',
-    'references with their own model': '<frame name="o#" attached_to="top::base"/>',
+    'references with their own model': '<frame name="o#" attached_to="m::base"/>',
     'joints': f'<link name="c#"/>{JOINT.format("#", "base", "c#", "<axis/>")}',
     'joints in a row':
         f'<link name="h0"/>|<link name="h+"/>{JOINT.format("h#", "h#", "h+", "<axis/>")}|',
@@ -186,60 +185,112 @@ PARTS: dict[str, Callable[[int], str]] = {
 }
 """Contents of a model, of about n parts; each can stand beside any other."""
 
-FILES: dict[str, Callable[[int], Files]] = {
-    'worlds': lambda n: {'scene.sdf': each(n, '<sdf version="1.10">|<world name="w#"/>|</sdf>')},
-    'models at the top': lambda n: {
-        'scene.sdf': each(n, '<sdf version="1.10">|<model name="m#"/>|</sdf>')},
-    'links of an actor': lambda n: scene(f'<actor name="a">{LINK * n}</actor>'),
-    'joints of a world': lambda n: scene(each(
-        n, f'<model name="m#">{LINK}</model>{JOINT.format("#", "world", "m#", "")}')),
-    'elements behind the outermost one': lambda n: {'scene.sdf': model('') + '<a/>' * n + '</a>'},
+TEXTS = {
+    'worlds': '<sdf version="1.10">|<world name="w#"/>|</sdf>',
+    'models at the top': '<sdf version="1.10">|<model name="m#"/>|</sdf>',
+    'links of an actor': world_file(f'<actor name="a">|{LINK}|</actor>'),
+    'joints of a world': world_file(
+        f'|<model name="m#">{LINK}</model>{JOINT.format("#", "world", "m#", "")}|'),
+    'elements behind the outermost one': f'{model("")}|<a/>|</a>',
     # Old versions
-    'old poses': lambda n: {'scene.sdf': model(each(
-        n, '<link name="l#"><pose frame="l0">0 0 0 0 0 0</pose></link>'), version='1.4')},
-    'old axes': lambda n: {'scene.sdf': model(
-        each(n, '<joint name="j">|<axis/>|</joint>'), version='1.4')},
-    'flags of an old axis': lambda n: {'scene.sdf': model(
-        each(n, f'<joint name="j"><axis>|{FLAG}|</axis></joint>'), version='1.6')},
-    'names that are renamed': lambda n: {'scene.sdf': model(
-        each(n, '<link name="r"/><frame name="r"/><joint name="r_frame#"/>'), version='1.6')},
-    'old name of many scopes': lambda n: scene(
-        f'<model name="m"><link name="{"a::" * 240}l">{"<a/>" * n}</link></model>', '1.7'),
-    'scopes of an old name': lambda n: scene(
-        f'<model name="m"><link name="{"a::" * n}l"/></model>', '1.7'),
-    'scopes of an old name with many elements': lambda n: scene(
-        f'<model name="m"><link name="{"a::" * min(n, 240)}l">{"<a/>" * 9000}</link></model>',
-        '1.7'),
-    'references in an old name of many scopes': lambda n: scene(
-        f'<model name="m"><link name="{"a::" * 240}l">'
-        + '<a relative_to="world"/>' * n + '</link></model>', '1.7'),
-    # Includes
-    'includes': lambda n: {**scene(each(n, NAMED)), 'part.sdf': model('')},
-    'includes without a URI in deep models': lambda n: scene(
-        nested(200, DEEP, '<link name="l"><include/></link>' * n)),
+    'old poses': model(
+        '|<link name="l#"><pose frame="l0">0 0 0 0 0 0</pose></link>|', version='1.4'),
+    'old axes': model('<joint name="j">|<axis/>|</joint>', version='1.4'),
+    'flags of an old axis': model(
+        f'<joint name="j"><axis>|{FLAG}|</axis></joint>', version='1.6'),
+    'names that are renamed': model(
+        '|<link name="r"/><frame name="r"/><joint name="r_frame#"/>|', version='1.6'),
+    'old name of many scopes': world_file(
+        f'<model name="m"><link name="{SCOPES}l">|<a/>|</link></model>', version='1.7'),
+    'scopes of an old name': world_file(
+        '<model name="m"><link name="|a::|l"/></model>', version='1.7'),
+    'references in an old name of many scopes': world_file(
+        f'<model name="m"><link name="{SCOPES}l">|<a relative_to="world"/>|</link></model>',
+        version='1.7'),
+    # Missing includes
+    'missing includes': world_file(f'|{MISSING.replace("none", "none#")}|'),
+    'one missing include': world_file(f'|{MISSING}|'),
+    'attachments to a missing include': world_file(
+        f'{NAMED_MISSING}|<frame name="a+" attached_to="a#"/>|'),
+    'scopes of a reference into a missing include': world_file(
+        f'{NAMED_MISSING}<frame name="f" attached_to="a0::|a::|b"/>'),
+    'includes in a cycle': model(f'|{include(uri="scene.sdf")}|'),
+    # URDF
+    'fixed joints of URDF in a row': robot(f'|{URDF_CHAIN}|'),
+    'moving joints of URDF in a row': robot(f'|{MOVING_CHAIN}|'),
+    'mimics of URDF': robot(
+        f'|{MOVING_CHAIN}|'.replace('</joint>', '<mimic joint="j0"/></joint>')),
+    'links of URDF at one link': robot(f'|{URDF_LINK.format("l0")}|'),
+    'errors in URDF': robot('|<joint name="j#" type="x"/>|'),
+    'digits before a letter in URDF': robot('<origin xyz="|1111111111|x 0 0"/>'),
+    'cycles of URDF': robot(f'|{URDF_LINK.format("s+")}|'),
+    'elements for Gazebo': robot('|<gazebo><plugin name="p" filename="f"/></gazebo>|'),
+    'elements for nothing': robot('|<gazebo reference="none#"><light/></gazebo>|'),
+    # Not XML
+    'no XML': '<<&<<&<<&<<&<<&<<&<<&<<&<<&<<&',
+    'open tags': '<a><a><a><a><a><a><a><a><a><a>',
+    'a long tag': '<|aaaaaaaaaaaaaaaaaaaa|',
+    'a tag that does not end': '<sdf |a="1" |',
+    'entities': f'<!DOCTYPE sdf [|<!ENTITY e# "x">|]>{model("")}',
+    'a long document type': f'<!DOCTYPE sdf SYSTEM "|[[[[[[[[|">{model("")}',
+    'a long declaration': f'<?xml version="1.0" |encoding |?>{model("")}',
+    'bytes that are not UTF-8': model('<x:a>|\udcff|</x:a>'),
+}
+"""Texts of a file that is loaded, with bars as in ``REPEATED``."""
+
+INCLUDED = {
+    'includes': (NAMED, ''),
+    'merges': (MERGED.replace('n#', 'n'), ''),
+    'merges with names': (MERGED, ''),
+    'merges into one model': (
+        f'<model name="m">|{include("<name>n#</name>", MERGE)}|</model>', ''),
+    'text behind a pose of a merged model': (
+        f'<model name="m">|{include("<name>n#</name>", MERGE)}|</model>', f'{POSE}|text |'),
+    'params for one link': (params('|<link element_id="base" action="modify"/>|'), ''),
+    'params for many links': (
+        params(f'|<link element_id="p#" action="modify">{POSE}</link>|'),
+        REPEATED['links with poses']),
+    'params that add': (params('|<link element_id="" name="n#" action="add"/>|'), ''),
+    'params that remove': (
+        params('|<link element_id="l#" action="remove"/>|'), REPEATED['links']),
+    'params that replace': (
+        params('|<link element_id="l#" name="k#" action="replace"/>|'), REPEATED['links']),
+    'params with unknown ids': (UNKNOWN_IDS, REPEATED['links']),
+    'params for children': (
+        params('<link element_id="vi">|<visual name="v#" action="remove"/>|</link>'),
+        REPEATED['visuals']),
+    'params that modify children': (
+        params('<link element_id="vi">|<visual name="v#" action="modify">'
+               f'{POSE}</visual>|</link>'),
+        f'<link name="vi">|<visual name="v#">{POSE}</visual>|</link>'),
+    'params for one link of many children': (
+        params('|<link element_id="vi" name="vi" action="modify"/>|'), REPEATED['visuals']),
+    'params with attributes': (
+        params('<link element_id="vi" action="modify"| a#="1"|/>'), REPEATED['visuals']),
+}
+"""Contents of a world, with bars as in ``REPEATED``, and of the model ``part.sdf``."""
+
+FILES: dict[str, Callable[[int], Files]] = {
+    **{name: partial(file_from_text, text=text) for name, text in TEXTS.items()},
+    **{name: partial(included_files, world=world, part=part)
+       for name, (world, part) in INCLUDED.items()},
+    'scopes of an old name with many elements': lambda n: file_from_text(min(n, 240), world_file(
+        f'<model name="m"><link name="|a::|l">{"<a/>" * 9000}</link></model>', version='1.7')),
+    'includes without a URI in deep models': lambda n: {'scene.sdf': world_file(
+        nested(200, DEEP, '<link name="l"><include/></link>' * n))},
     'includes of many files': lambda n: {
-        **scene(each(n // 4, include('<name>m#</name>', uri='p#.sdf'))),
+        'scene.sdf': world_file(each(n // 4, include('<name>m#</name>', uri='p#.sdf'))),
         **{f'p{number}.sdf': model('') for number in range(n // 4)}},
     'includes of a directory': lambda n: {
-        **scene(each(n, include('<name>m#</name>', uri='part'))), 'part/model.sdf': model(''),
+        'scene.sdf': world_file(each(n, include('<name>m#</name>', uri='part'))),
+        'part/model.sdf': model(''),
         'part/model.config': each(n, '<model>|<sdf version="1.9">model.sdf</sdf>|</model>')},
-    'missing includes': lambda n: scene(each(n, include(uri='none#.sdf'))),
     'missing includes beside many files': lambda n: {
-        **scene(each(n, include(uri='none#.sdf'))), **{f'f{i}.txt': '' for i in range(n)}},
-    'one missing include': lambda n: scene(include(uri='none.sdf') * n),
+        **FILES['missing includes'](n), **{f'f{i}.txt': '' for i in range(n)}},
     'references into missing includes': lambda n: {'scene.sdf': model(
-        include('<name>none</name>', uri='none.sdf')
-        + each(n // 40, f'<frame name="f#" attached_to="{"a::" * 300}x"/>'))},
-    'attachments to a missing include': lambda n: scene(
-        include('<name>a0</name>', uri='none.sdf')
-        + each(n, '<frame name="a+" attached_to="a#"/>')),
-    'scopes of a reference into a missing include': lambda n: scene(
-        include('<name>a</name>', uri='none.sdf')
-        + f'<frame name="f" attached_to="{"a::" * n}b"/>'),
-    'includes of a broken file': lambda n: {**scene(include() * n), 'part.sdf': '<sdf'},
-    'includes in a cycle': lambda n: {'scene.sdf': model(include(uri='scene.sdf') * n)},
+        NAMED_MISSING + each(n // 40, f'<frame name="f#" attached_to="{SCOPES}x"/>'))},
     'includes of a file with many tops': lambda n: {
-        **scene(include() * (n // 2)),
+        'scene.sdf': world_file(include() * (n // 2)),
         'part.sdf': each(n // 2, '<sdf version="1.9">|<model name="m#"/>|</sdf>')},
     'includes in one another': lambda n: {
         **{f'p{i}.sdf': model(include(uri=f'p{i + 1}.sdf')) for i in range(60)},
@@ -248,103 +299,55 @@ FILES: dict[str, Callable[[int], Files]] = {
         **{f'p{i}.sdf': model(each(2, include('<name>m#</name>', uri=f'p{i + 1}.sdf')))
            for i in range(n.bit_length())},
         f'p{n.bit_length()}.sdf': model(''), 'scene.sdf': model(include(uri='p0.sdf'))},
-    'merges': lambda n: {**scene(each(n, MERGED.replace('n#', 'n'))), 'part.sdf': model('')},
-    'merges with names': lambda n: {**scene(each(n, MERGED)), 'part.sdf': model('')},
-    'merges into one model': lambda n: {
-        'scene.sdf': model(each(n, include('<name>n#</name>', MERGE))), 'part.sdf': model('')},
-    'text behind an included model': lambda n: {
-        **scene(each(n, NAMED)), 'part.sdf': model('').replace('</sdf>', 'text ' * n + '</sdf>')},
-    'text behind a pose of a merged model': lambda n: {
-        'scene.sdf': model(each(n, include('<name>n#</name>', MERGE))),
-        'part.sdf': model(f'{POSE}{"text " * n}')},
     'name spaces of an included model': lambda n: {
-        **scene(each(20, NAMED)),
+        'scene.sdf': world_file(each(20, NAMED)),
         'part.sdf': model(each(n, '<p#:x/>'), each(n, ' xmlns:p#="u"'))},
-    # Parameters of includes
-    'params for one link': lambda n: params('<link element_id="base" action="modify"/>' * n, ''),
-    'params for many links': lambda n: params(each(
-        n, f'<link element_id="p#" action="modify">{POSE}</link>'),
-        each(n, REPEATED['links with poses'])),
-    'params that add': lambda n: params(each(
-        n, '<link element_id="" name="n#" action="add"/>'), ''),
-    'params that remove': lambda n: params(each(
-        n, '<link element_id="l#" action="remove"/>'), each(n, '<link name="l#"/>')),
-    'params that replace': lambda n: params(each(
-        n, '<link element_id="l#" name="k#" action="replace"/>'), each(n, '<link name="l#"/>')),
-    'params that add includes': lambda n: {**params(each(
-        n, f'<model element_id="" name="n#" action="add">{include(uri="other.sdf")}</model>'), ''),
+    'text behind an included model': lambda n: {
+        **FILES['includes'](n),
+        'part.sdf': each(n, model('').replace('</sdf>', '|text |</sdf>'))},
+    'params that add includes': lambda n: {
+        **included_files(n, params(
+            f'|<model element_id="" name="n#" action="add">{include(uri="other.sdf")}</model>|'),
+            ''),
         'other.sdf': model('')},
-    'params with unknown ids': lambda n: params(each(n, UNKNOWN_ID), each(n, '<link name="l#"/>')),
-    'params for children': lambda n: params(
-        each(n, '<link element_id="vi">|<visual name="v#" action="remove"/>|</link>'),
-        PARTS['visuals'](n)),
-    'params that modify children': lambda n: params(
-        '<link element_id="vi">'
-        + each(n, f'<visual name="v#" action="modify">{POSE}</visual>') + '</link>',
-        each(n, f'<link name="vi">|<visual name="v#">{POSE}</visual>|</link>')),
-    'params for one link of many children': lambda n: params(
-        '<link element_id="vi" name="vi" action="modify"/>' * n, PARTS['visuals'](n)),
-    'params with attributes': lambda n: params(
-        each(n, '<link element_id="vi" action="modify"| a#="1"|/>'), PARTS['visuals'](n)),
-    'params for deep elements': lambda n: params(
-        f'<link element_id="{PATH}::l" action="modify"/>' * (n // 50), nested(200, DEEP, '')),
+    'params for deep elements': lambda n: {
+        **included_files(n // 50, params(f'|<link element_id="{PATH}::l" action="modify"/>|'), ''),
+        'part.sdf': model(nested(200, DEEP, ''))},
+    'includes of a broken file': lambda n: {
+        'scene.sdf': world_file(include() * n), 'part.sdf': '<sdf'},
     # Gazebo Fuel
     'models of Fuel': lambda n: {
-        **scene(each(n // 3, include('<name>m#</name>', uri=FUEL))), **fuel(n // 3)},
+        'scene.sdf': world_file(each(n // 3, include('<name>m#</name>', uri=FUEL))),
+        **fuel(n // 3)},
     'versions of a model of Fuel': lambda n: {
-        **scene(each(n, include('<name>m#</name>', uri=FUEL.replace('#', '0')))),
+        'scene.sdf': world_file(each(n, include('<name>m#</name>', uri=FUEL.replace('#', '0')))),
         **fuel(n // 5, 'versions')},
     'missing models of Fuel': lambda n: {
-        **scene(each(n, include('<name>m#</name>', uri=FUEL.replace('#', 'x#')))), **fuel(n // 5)},
+        'scene.sdf': world_file(each(n, include('<name>m#</name>', uri=FUEL.replace('#', 'x#')))),
+        **fuel(n // 5)},
     # URDF
-    'fixed joints of URDF in a row': lambda n: robot(urdf_chain(n, 'fixed')),
-    'moving joints of URDF in a row': lambda n: robot(urdf_chain(n, 'continuous')),
-    'mimics of URDF': lambda n: robot(urdf_chain(n, 'continuous').replace(
-        '</joint>', '<mimic joint="j0"/></joint>')),
-    'links of URDF at one link': lambda n: robot(each(n, URDF_LINK.format('l0'))),
-    'errors in URDF': lambda n: robot(each(n, '<joint name="j#" type="x"/>')),
-    'digits before a letter in URDF': lambda n: robot(
-        urdf_chain(1, 'fixed') + f'<origin xyz="{"1" * 10 * n}x 0 0"/>'),
-    'cycles of URDF': lambda n: robot(each(n, URDF_LINK.format('s+'))),
-    'visuals of lumped links': lambda n: robot(urdf_chain(n // 2, 'fixed').replace(
-        f'name="l{n // 2}">', f'name="l{n // 2}">{SPHERE * n}')),
-    'sensors of lumped links': lambda n: robot(
-        urdf_chain(n // 2, 'fixed') + f'<gazebo reference="l{n // 2}">'
-        + each(n, '<sensor name="s#" type="imu"/>') + '</gazebo>'),
-    'elements for Gazebo': lambda n: robot('<gazebo><plugin name="p" filename="f"/></gazebo>' * n),
-    'elements for nothing': lambda n: robot(each(
-        n, '<gazebo reference="none#"><light/></gazebo>')),
-    'long name of a link of URDF': lambda n: robot(
-        each(n, URDF_LINK.format('l0')), name='x' * 10 * n),
-    'long name of a link with visuals': lambda n: {'scene.sdf': (
-        f'<robot name="r"><link name="{"x" * 27 * n}">{SPHERE * n}</link></robot>')},
-    # Not XML
-    'no XML': lambda n: {'scene.sdf': '<<&' * 10 * n},
-    'open tags': lambda n: {'scene.sdf': '<a>' * 10 * n},
-    'a long tag': lambda n: {'scene.sdf': '<' + 'a' * 20 * n},
-    'a tag that does not end': lambda n: {'scene.sdf': '<sdf ' + 'a="1" ' * n},
-    'entities': lambda n: {
-        'scene.sdf': each(n, '<!DOCTYPE sdf [|<!ENTITY e# "x">|]>') + model('')},
-    'a long document type': lambda n: {
-        'scene.sdf': each(n, '<!DOCTYPE sdf SYSTEM "|[[[[[[[[|">') + model('')},
-    'a long declaration': lambda n: {
-        'scene.sdf': each(n, '<?xml version="1.0" |encoding |?>') + model('')},
-    'bytes that are not UTF-8': lambda n: {'scene.sdf': model('<x:a>' + '\udcff' * n + '</x:a>')},
+    'visuals of lumped links': lambda n: {'scene.sdf': robot(each(n // 2, URDF_CHAIN).replace(
+        f'name="l{n // 2}">', f'name="l{n // 2}">{SPHERE * n}'))},
+    'sensors of lumped links': lambda n: {'scene.sdf': robot(
+        each(n // 2, URDF_CHAIN)
+        + urdf.gazebo(each(n, '<sensor name="s#" type="imu"/>'), f'l{n // 2}'))},
+    'long name of a link of URDF': lambda n: {'scene.sdf': robot(
+        each(n, URDF_LINK.format('l0'))).replace('"l0"', f'"{"x" * 10 * n}"')},
+    'long name of a link with visuals': lambda n: {'scene.sdf': urdf.robot(
+        f'<link name="{"x" * 27 * n}">{SPHERE * n}</link>')},
 }
 """Whole files, of about n parts."""
 
-AROUND: dict[str, Callable[[str, int], Files]] = {
-    'model': lambda text, _: {'scene.sdf': model(text)},
-    'includes': lambda text, n: {**scene(each(n, NAMED)), 'part.sdf': model(text)},
-    'merges': lambda text, n: {**scene(each(n, MERGED)), 'part.sdf': model(text)},
-    'params': lambda text, n: params(each(n, UNKNOWN_ID), text),
-}
-"""Files around a content of a model, which is as long as they are often."""
+AROUND = {'model': '', 'includes': NAMED, 'merges': MERGED, 'params': UNKNOWN_IDS}
+"""What includes the content of a model, n times; nothing where it is loaded itself."""
 
 
 def files_of(family: str, n: int, around: str = 'model') -> Files:
     """Return the files of a family, for a content of a model with what is around it."""
-    return AROUND[around](PARTS[family](n), n) if family in PARTS else FILES[family](n)
+    if family in FILES:
+        return FILES[family](n)
+    files = included_files(n, AROUND[around], '') if AROUND[around] else {}
+    return {**files, 'part.sdf' if files else 'scene.sdf': model(PARTS[family](n))}
 
 
 def write(files: Files, folder: Path) -> Path:
