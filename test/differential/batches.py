@@ -9,12 +9,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from random import Random
-import shutil
-import subprocess
 import tempfile
 
 from differential.comparison import Difference, difference_between, is_comparable, own_answer
-from differential.reference import Answer, Reference
+from differential.reference import Reference
 from differential.scene_builder import random_scene, SceneFiles
 from differential.scene_setting import with_pose_set
 
@@ -39,18 +37,6 @@ class Tally:
     """Name of the scene, the scene and what differs."""
 
 
-@dataclass
-class Batch:
-    """Scenes that are being resolved."""
-
-    names: list[str]
-    scenes: list[SceneFiles]
-    paths: list[Path]
-    folder: Path
-    process: subprocess.Popen[str]
-    own: list[Answer]
-
-
 def compare_scenes(reference: Reference, count: int, first_seed: int) -> Iterator[Tally]:
     """
     Compare the package with libsdformat on random scenes.
@@ -61,26 +47,15 @@ def compare_scenes(reference: Reference, count: int, first_seed: int) -> Iterato
     :return: the same tally after each batch, updated.
     """
     tally = Tally()
-    pending: Batch | None = None
-    try:
-        for start in range(0, count, BATCH):
-            number = first_seed * 1_000_003 + start // BATCH
-            dice = Random(number)
-            drawn = [drawn_scene(dice) for _ in range(min(BATCH, count - start))]
-            # libsdformat was busy with the batch before while this one was drawn.
-            if pending:
-                add_batch(tally, pending, reference)
-                yield tally
-            pending = start_batch(reference, drawn, number)
-        if pending:
-            add_batch(tally, pending, reference)
-            pending = None
-            yield tally
-    finally:
-        if pending:
-            pending.process.kill()
-            pending.process.wait()
-            shutil.rmtree(pending.folder)
+    for start in range(0, count, BATCH):
+        number = first_seed * 1_000_003 + start // BATCH
+        dice = Random(number)
+        scenes = {
+            f'seed_{number}_scene_{position}': drawn_scene(dice)
+            for position in range(min(BATCH, count - start))}
+        with tempfile.TemporaryDirectory(prefix='differential-') as folder:
+            add_batch(tally, scenes, Path(folder), reference)
+        yield tally
 
 
 def drawn_scene(dice: Random) -> SceneFiles:
@@ -89,22 +64,15 @@ def drawn_scene(dice: Random) -> SceneFiles:
     return with_pose_set(scene, dice) if dice.randrange(10) == 0 else scene
 
 
-def start_batch(reference: Reference, drawn: list[SceneFiles], number: int) -> Batch:
-    """Write a batch, start libsdformat on it and resolve it with the package meanwhile."""
-    folder = Path(tempfile.mkdtemp(prefix='differential-'))
-    names = [f'seed_{number}_scene_{position}' for position in range(len(drawn))]
-    paths = [scene.write(folder, name) for scene, name in zip(drawn, names, strict=True)]
+def add_batch(
+    tally: Tally, scenes: dict[str, SceneFiles], folder: Path, reference: Reference,
+) -> None:
+    """Have both sides resolve scenes at the same time, compare, and add to the tally."""
+    paths = [scene.write(folder, name) for name, scene in scenes.items()]
     process = reference.start(paths, folder)
-    own = [own_answer(path, folder) for path in paths]
-    return Batch(names, drawn, paths, folder, process, own)
-
-
-def add_batch(tally: Tally, batch: Batch, reference: Reference) -> None:
-    """Wait for libsdformat's answers on a batch, compare, and add to the tally."""
-    answers = reference.finish(batch.process, batch.paths, batch.folder)
-    shutil.rmtree(batch.folder)
-    for name, scene, own, answer in zip(batch.names, batch.scenes, batch.own, answers,
-                                        strict=True):
+    owns = [own_answer(path, folder) for path in paths]
+    answers = reference.finish(process, paths, folder)
+    for (name, scene), own, answer in zip(scenes.items(), owns, answers, strict=True):
         tally.scenes += 1
         tally.distinct.add(hash(tuple(scene.files.values())))
         tally.poses += len(answer.poses)

@@ -9,7 +9,7 @@ import math
 from pathlib import Path
 
 from differential.reference import Answer, AxisValues, CRASH, EXCEPTION, JointValues, PoseValues
-import sdf_pose_bridge
+from sdf_pose_bridge import load, SdfError
 from sdf_pose_bridge.scene.scene import Joint, Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.joints import AXIS_TAGS
@@ -41,8 +41,8 @@ def own_answer(file: Path, resource_path: Path) -> Answer:
     :return: the answer, in the terms of the reference.
     """
     try:
-        scene = sdf_pose_bridge.load(str(file), resource_paths=[str(resource_path)])
-    except sdf_pose_bridge.SdfError as error:
+        scene = load(str(file), resource_paths=[str(resource_path)])
+    except SdfError as error:
         codes = tuple(one.code for one in error.errors)
         return Answer(False, codes, str(error.errors[0]), {})
     except Exception as error:  # noqa: BLE001  whatever it is, it must not end the comparison

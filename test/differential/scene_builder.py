@@ -17,7 +17,7 @@ from xml.etree import ElementTree
 
 from differential.scene_changes import add_param, change_at_random
 from differential.scene_links import add_mimics, fill, joint_body, UNKNOWN_FRAME
-from differential.scene_text import BOOLEANS, new_name, new_pose
+from differential.scene_text import BOOLEANS, new_name, new_pose, sub_element
 from differential.scene_urdf import RobotBuilder
 from differential.scene_values import odd_scene
 from differential.scene_xml import with_oddities
@@ -153,19 +153,19 @@ class SceneBuilder:
         else:
             built = self.model(taken, depth + 1, top=True, merged=merged)
         element = Element('include')
-        ElementTree.SubElement(element, 'uri').text = self.included_uri(built.element)
+        sub_element(element, 'uri', self.included_uri(built.element))
         if merged or self.chance(6):
             element.set('merge', self.dice.choice(BOOLEANS[merged]))
         built = built._replace(element=element)
         if self.chance(2):
             built = built._replace(name=new_name(self.dice, taken))
-            ElementTree.SubElement(element, 'name').text = built.name
+            sub_element(element, 'name', built.name)
         if self.chance(4):
             static = self.dice.choice(BOOLEANS[self.chance(2)])
-            ElementTree.SubElement(element, 'static').text = static
+            sub_element(element, 'static', static)
         if self.chance(3):
             self.traits.add('params')
-            params = ElementTree.SubElement(element, 'experimental_params')
+            params = sub_element(element, 'experimental_params')
             for _ in range(self.dice.randint(1, 2)):
                 add_param(self.dice, params, built.inner, built.links)
         return built
@@ -201,8 +201,7 @@ class SceneBuilder:
         if self.chance(8 if merged else 4):
             element.set('placement_frame', dice.choice(built.inner))
         if self.chance(5):
-            ElementTree.SubElement(element, 'static').text = dice.choice(
-                BOOLEANS[not merged and self.chance(2)])
+            sub_element(element, 'static', dice.choice(BOOLEANS[not merged and self.chance(2)]))
         if top:
             self.add(element, new_pose(dice))
         return built
@@ -245,8 +244,7 @@ class SceneBuilder:
         pose = self.pose(placed)
         self.add(built.element, pose)
         if built.element.tag == 'include' and pose is not None and self.chance(4):
-            ElementTree.SubElement(built.element, 'placement_frame').text = self.dice.choice(
-                built.inner)
+            sub_element(built.element, 'placement_frame', self.dice.choice(built.inner))
 
     def frame(self, name: str, placed: list[str]) -> Element:
         """Draw an explicit frame without its pose."""
@@ -269,7 +267,7 @@ class SceneBuilder:
         for scope in dice.sample(('arm', 'cup', 'disk'), dice.randint(1, 2)):
             names = [f'{scope}::{name}' for name in dice.sample(('a', 'bb', 'x::cc'), 2)]
             for link_name in names:
-                link = ElementTree.SubElement(model, 'link', name=link_name)
+                link = sub_element(model, 'link', name=link_name)
                 self.add(link, self.pose(names if self.chance(3) else []))
             if self.chance(2):
                 frame = Element('frame', name=f'{scope}::{MODEL}', attached_to=names[0])
@@ -279,7 +277,7 @@ class SceneBuilder:
                 self.add(model, joint_body(dice, f'{scope}::j', *names))
         if self.chance(2):
             nested = Element('model', name='oval')
-            ElementTree.SubElement(nested, 'link', name=dice.choice(('l', 'hub::l')))
+            sub_element(nested, 'link', name=dice.choice(('l', 'hub::l')))
             self.add(model, nested)
         return model
 
@@ -308,11 +306,11 @@ class SceneBuilder:
         if tag == 'light':
             element.set('type', self.dice.choice(('point', 'spot', 'directional')))
         elif self.chance(2):
-            ElementTree.SubElement(element, 'link', name='l')
+            sub_element(element, 'link', name='l')
         if self.chance(4):
             self.add(element, new_pose(self.dice))
             include = Element('include')
-            ElementTree.SubElement(include, 'uri').text = self.included_uri(element)
+            sub_element(include, 'uri', self.included_uri(element))
             element = include
         self.add(element, self.pose(placed))
         return element

@@ -12,7 +12,7 @@ from copy import deepcopy
 from random import Random
 from xml.etree import ElementTree
 
-from differential.scene_text import new_pose
+from differential.scene_text import new_pose, sub_element
 
 Element = ElementTree.Element
 
@@ -39,7 +39,7 @@ def add_param(dice: Random, params: Element, inner: list[str], links: list[str])
     action = dice.choice(ACTIONS)
     scope, _, own_name = name.rpartition('::')
     if dice.random() < 0.6:
-        element = ElementTree.SubElement(params, tag, element_id=name)
+        element = sub_element(params, tag, element_id=name)
         pose = new_pose(dice, dice.choice(inner)) if dice.random() < 0.3 else new_pose(dice)
         if pose is not None:
             pose.set('action', action)
@@ -47,7 +47,7 @@ def add_param(dice: Random, params: Element, inner: list[str], links: list[str])
         return
     if action == 'add':
         tag, name, own_name = 'frame', scope, f'added_{len(params)}'
-    element = ElementTree.SubElement(params, tag, element_id=name, action=action, name=own_name)
+    element = sub_element(params, tag, element_id=name, action=action, name=own_name)
     pose = new_pose(dice)
     if action != 'remove' and pose is not None:
         element.append(pose)

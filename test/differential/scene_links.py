@@ -7,7 +7,7 @@ from __future__ import annotations
 from random import Random
 from xml.etree import ElementTree
 
-from differential.scene_text import NAMES, new_pose
+from differential.scene_text import NAMES, new_pose, sub_element
 
 Element = ElementTree.Element
 
@@ -48,14 +48,14 @@ def joint_body(dice: Random, name: str, parent: str, child: str) -> Element:
     """Draw a joint with its type and axes, but without its pose."""
     kind = dice.choice(sorted(AXES))
     element = Element('joint', name=name, type=kind)
-    ElementTree.SubElement(element, 'parent').text = parent
-    ElementTree.SubElement(element, 'child').text = child
+    sub_element(element, 'parent', parent)
+    sub_element(element, 'child', child)
     if kind == 'gearbox':
-        ElementTree.SubElement(element, 'gearbox_reference_body').text = parent
+        sub_element(element, 'gearbox_reference_body', parent)
     for number in range(AXES[kind]):
-        axis = ElementTree.SubElement(element, 'axis2' if number else 'axis')
+        axis = sub_element(element, 'axis2' if number else 'axis')
         vector = dice.choice(('0 0 1', '0 1 0', '1 0 0', '-1 0 0', '0.6 0 0.8'))
-        ElementTree.SubElement(axis, 'xyz').text = vector
+        sub_element(axis, 'xyz', vector)
         for part in dice.choice(AXIS_PARTS):
             axis.append(ElementTree.fromstring(part))
     if kind == 'screw':
@@ -79,7 +79,7 @@ def fill(dice: Random, element: Element, references: list[str]) -> None:
             _posed(dice, element, 'sensor', 'wrench', references).set('type', 'force_torque')
         return
     if dice.randint(0, 3) == 0:
-        inertial = ElementTree.SubElement(element, 'inertial')
+        inertial = sub_element(element, 'inertial')
         pose = new_pose(dice)
         if pose is not None:
             inertial.append(pose)
@@ -93,8 +93,8 @@ def fill(dice: Random, element: Element, references: list[str]) -> None:
             child.set('type', sensor_type)
             if sensor_type == 'camera':
                 # The optics' own offset is no frame.
-                camera = ElementTree.SubElement(child, 'camera')
-                ElementTree.SubElement(camera, 'pose').text = '1 2 3 0 0 0'
+                camera = sub_element(child, 'camera')
+                sub_element(camera, 'pose', '1 2 3 0 0 0')
         elif kind == 'light':
             child.set('type', 'point')
         elif kind == 'particle_emitter':
@@ -121,7 +121,7 @@ def add_mimics(dice: Random, joints: list[Element]) -> None:
             for part in ('multiplier', 'offset', 'reference'):
                 text = dice.choice(MIMIC_NUMBERS)
                 if text is not None:
-                    ElementTree.SubElement(mimic, part).text = text
+                    sub_element(mimic, part, text)
             joint.find(tag).append(mimic)
 
 
@@ -129,10 +129,10 @@ def _geometry(dice: Random) -> Element:
     """Draw a shape."""
     geometry = Element('geometry')
     tag = dice.choice(sorted(SHAPES))
-    shape = ElementTree.SubElement(geometry, tag)
+    shape = sub_element(geometry, tag)
     for child, count in SHAPES[tag].items():
         sizes = [dice.randint(1, 50) for _ in range(count)]
-        ElementTree.SubElement(shape, child).text = ' '.join(str(size / 10) for size in sizes)
+        sub_element(shape, child, ' '.join(str(size / 10) for size in sizes))
     return geometry
 
 
@@ -145,7 +145,7 @@ def _make_inertial_automatic(dice: Random, link: Element) -> None:
     for element in (inertial, *link.iterfind('collision')):
         if dice.random() < 0.5:
             density = dice.choice(('', str(dice.randint(1, 9000))))
-            ElementTree.SubElement(element, 'density').text = density
+            sub_element(element, 'density', density)
     for pose in link.iterfind('collision/pose'):
         # The collision has to be somewhere for its mass to count.
         if pose.get('relative_to', '').strip() == UNKNOWN_FRAME:
@@ -155,7 +155,7 @@ def _make_inertial_automatic(dice: Random, link: Element) -> None:
 def _posed(dice: Random, element: Element, kind: str, name: str,
           references: list[str]) -> Element:
     """Add a child whose pose may name any frame, or one that does not exist."""
-    child = ElementTree.SubElement(element, kind, name=name)
+    child = sub_element(element, kind, name=name)
     reference = ''
     choice = dice.randint(0, 20)
     if choice == 0:
@@ -170,8 +170,8 @@ def _posed(dice: Random, element: Element, kind: str, name: str,
 
 def _add_foreign(element: Element) -> None:
     """Add what SDFormat has to pass over unread."""
-    plugin = ElementTree.SubElement(element, 'plugin', name='p', filename='libp.so')
-    ElementTree.SubElement(plugin, 'pose', relative_to='nothing').text = 'not a pose'
-    vendor = ElementTree.SubElement(element, 'vendor:thing', name='a::b')
-    ElementTree.SubElement(vendor, 'pose').text = '1 2'
-    ElementTree.SubElement(element, 'misspelt').text = 'unknown'
+    plugin = sub_element(element, 'plugin', name='p', filename='libp.so')
+    sub_element(plugin, 'pose', 'not a pose', relative_to='nothing')
+    vendor = sub_element(element, 'vendor:thing', name='a::b')
+    sub_element(vendor, 'pose', '1 2')
+    sub_element(element, 'misspelt', 'unknown')

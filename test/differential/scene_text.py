@@ -8,6 +8,8 @@ import math
 from random import Random
 from xml.etree import ElementTree
 
+Element = ElementTree.Element
+
 NAMES = (
     'base', 'arm', 'tool', 'l', 'a', 'b', 'cam', 'left arm', 'größe', '関節', 'a/b', 'v1.2',
     'tcp-1', '_x', 'x__', '___', "o'clock", 'R&D', 'x<y', 'a:b', 'Arm', '0', 'link',
@@ -26,6 +28,13 @@ TURNS = (0.0, math.pi / 2, -math.pi / 2, math.pi, -math.pi, math.pi / 4, 1.5708,
          3.14159, 2 * math.pi, 1e-9, 7.0)
 DEGREES = (0.0, 90.0, -90.0, 180.0, -180.0, 45.0, 360.0, 30.0, 89.9999, 270.0, -720.5)
 FORMATS = ('rpy', 'rpy', 'rpy', 'degrees', 'degrees', 'quaternion', 'quaternion', 'empty')
+
+
+def sub_element(parent: Element, tag: str, text: str | None = None, **attributes: str) -> Element:
+    """Add a child, and return it."""
+    child = ElementTree.SubElement(parent, tag, attributes)
+    child.text = text
+    return child
 
 
 def new_name(dice: Random, taken: set[str]) -> str:
@@ -65,7 +74,7 @@ def number_from(dice: Random, often: tuple[float, ...], limit: float) -> float:
     return value if dice.random() < 0.7 else round(value, 3)
 
 
-def new_pose(dice: Random, reference: str = '') -> ElementTree.Element | None:
+def new_pose(dice: Random, reference: str = '') -> Element | None:
     """
     Draw a pose element, or None for no element.
 
@@ -73,7 +82,7 @@ def new_pose(dice: Random, reference: str = '') -> ElementTree.Element | None:
     """
     if not reference and dice.randrange(5) == 0:
         return None
-    pose = ElementTree.Element('pose')
+    pose = Element('pose')
     if reference:
         padding = dice.choice(('', '', '', '', '', '', ' ', '\t'))
         pose.set('relative_to', padding + reference + padding)

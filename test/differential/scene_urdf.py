@@ -12,6 +12,7 @@ from differential.scene_text import (
     new_name,
     new_pose,
     number_from,
+    sub_element,
     text_from_number,
     TURNS,
 )
@@ -92,7 +93,7 @@ class RobotBuilder:
         """Add an origin, whole, in part or none."""
         choice = self.dice.randrange(8)
         if choice:
-            origin = ElementTree.SubElement(parent, 'origin')
+            origin = sub_element(parent, 'origin')
             if choice > 1:
                 origin.set('xyz', self.numbers(LENGTHS, 10))
             if choice != 2:
@@ -101,50 +102,49 @@ class RobotBuilder:
     def joint(self, name: str, parent: str, child: str) -> bool:
         """Add a joint; return whether it may lump its child into its parent."""
         kind = self.dice.choice(JOINT_TYPES)
-        joint = ElementTree.SubElement(self.root, 'joint', name=name, type=kind)
+        joint = sub_element(self.root, 'joint', name=name, type=kind)
         self.origin(joint)
-        ElementTree.SubElement(joint, 'parent', link=parent)
-        ElementTree.SubElement(joint, 'child', link=child)
+        sub_element(joint, 'parent', link=parent)
+        sub_element(joint, 'child', link=child)
         if kind != 'fixed' and self.dice.random() < 0.7:
             axis = self.dice.choice(('0 0 1', '0 -2 0', '1 1 0'))
-            ElementTree.SubElement(joint, 'axis', xyz=axis)
+            sub_element(joint, 'axis', xyz=axis)
         if kind in ('revolute', 'prismatic'):
-            ElementTree.SubElement(joint, 'limit', lower='-1', upper='1', effort='1', velocity='1')
+            sub_element(joint, 'limit', lower='-1', upper='1', effort='1', velocity='1')
         for option in ('preserveFixedJoint', 'disableFixedJointLumping'):
             if self.dice.random() < 0.1:
-                gazebo = ElementTree.SubElement(self.root, 'gazebo', reference=name)
-                ElementTree.SubElement(gazebo, option).text = self.dice.choice(
-                    ('true', 'YES', '1', 'false', 'no'))
+                gazebo = sub_element(self.root, 'gazebo', reference=name)
+                sub_element(gazebo, option, self.dice.choice(('true', 'YES', '1', 'false', 'no')))
         return kind == 'fixed'
 
     def link(self, name: str, *, is_massless: bool) -> None:
         """Add a link."""
-        link = ElementTree.SubElement(self.root, 'link', name=name)
+        link = sub_element(self.root, 'link', name=name)
         if not is_massless:
-            inertial = ElementTree.SubElement(link, 'inertial')
+            inertial = sub_element(link, 'inertial')
             self.origin(inertial)
             mass = str(self.dice.choice((0.1, 1, 2.5, 10)))
-            ElementTree.SubElement(inertial, 'mass', value=mass)
-            ElementTree.SubElement(
+            sub_element(inertial, 'mass', value=mass)
+            sub_element(
                 inertial, 'inertia', ixx='1', iyy='1', izz='1', ixy='0', ixz='0', iyz='0')
         for kind in self.dice.choices(('visual', 'collision'), k=self.dice.randrange(4)):
-            element = ElementTree.SubElement(link, kind)
+            element = sub_element(link, kind)
             if self.dice.random() < 0.4:
                 element.set('name', self.dice.choice(('v', 'größe', name, f'{name} 2', '')))
             self.origin(element)
             tag = self.dice.choice(sorted(SHAPES))
-            ElementTree.SubElement(ElementTree.SubElement(element, 'geometry'), tag, SHAPES[tag])
+            sub_element(sub_element(element, 'geometry'), tag, **SHAPES[tag])
 
     def extensions(self, references: list[str], names: set[str]) -> None:
         """Add what is SDFormat in a URDF file."""
         for number in range(self.dice.randrange(5)):
             kind = self.dice.choice(MOVED)
-            gazebo = ElementTree.SubElement(
+            gazebo = sub_element(
                 self.root, 'gazebo', reference=self.dice.choice(references))
-            ElementTree.SubElement(gazebo, 'mu1').text = '0.2'
-            element = ElementTree.SubElement(gazebo, kind, name=f'{kind}_{number}')
+            sub_element(gazebo, 'mu1', '0.2')
+            element = sub_element(gazebo, kind, name=f'{kind}_{number}')
             if kind == 'projector':
-                ElementTree.SubElement(element, 'texture').text = 't.png'
+                sub_element(element, 'texture', 't.png')
             else:
                 element.set('type', {'sensor': 'imu', 'light': 'point'}[kind])
             reference = self.dice.choice(references) if self.dice.random() < 0.2 else ''
@@ -156,26 +156,26 @@ class RobotBuilder:
         if self.dice.random() < 0.2:
             self.extra_joint(references, names)
         if self.dice.random() < 0.2:
-            gazebo = ElementTree.SubElement(self.root, 'gazebo')
-            ElementTree.SubElement(
+            gazebo = sub_element(self.root, 'gazebo')
+            sub_element(
                 gazebo, 'frame', name=self.name(names),
                 attached_to=self.dice.choice(references))
         if self.dice.random() < 0.2:
-            gazebo = ElementTree.SubElement(self.root, 'gazebo')
-            ElementTree.SubElement(gazebo, 'static').text = self.dice.choice(('true', 'no'))
+            gazebo = sub_element(self.root, 'gazebo')
+            sub_element(gazebo, 'static', self.dice.choice(('true', 'no')))
         if self.dice.random() < 0.2:
             self.origin(self.root)
         if self.dice.random() < 0.1:
-            gazebo = ElementTree.SubElement(self.root, 'gazebo')
-            ElementTree.SubElement(gazebo, 'pose').text = self.numbers(LENGTHS, 5, 6)
+            gazebo = sub_element(self.root, 'gazebo')
+            sub_element(gazebo, 'pose', self.numbers(LENGTHS, 5, 6))
 
     def extra_joint(self, links: list[str], names: set[str]) -> None:
         """Add a joint of SDFormat, which may name links that are lumped."""
         parent, child = self.dice.choices(links, k=2)
-        gazebo = ElementTree.SubElement(self.root, 'gazebo')
-        joint = ElementTree.SubElement(
+        gazebo = sub_element(self.root, 'gazebo')
+        joint = sub_element(
             gazebo, 'joint', name=self.name(names), type='ball')
-        ElementTree.SubElement(joint, 'parent').text = parent
-        ElementTree.SubElement(joint, 'child').text = child
+        sub_element(joint, 'parent', parent)
+        sub_element(joint, 'child', child)
         if self.dice.random() < 0.5:
-            ElementTree.SubElement(joint, 'pose').text = self.numbers(LENGTHS, 5, 6)
+            sub_element(joint, 'pose', self.numbers(LENGTHS, 5, 6))

@@ -12,6 +12,7 @@ from functools import cache
 from random import Random
 from xml.etree import ElementTree
 
+from differential.scene_text import sub_element
 from sdf_pose_bridge.sdformat.grammar import Definition, definition_of, ValueType
 
 NUMBERS = (
@@ -84,7 +85,7 @@ def _add_odd_value(
     for tag in path:
         definition = definition.children[tag]
         found = element.find(tag)
-        element = ElementTree.SubElement(element, tag) if found is None else found
+        element = sub_element(element, tag) if found is None else found
     value_type, texts = definition.value_type, [*NUMBERS, *VECTORS, *TEXTS]
     if attribute:
         value_type = definition.attributes[attribute].value_type
@@ -114,10 +115,10 @@ def _complete(element: ElementTree.Element, definition: Definition | None = None
     if definition.identifier == 'joint':
         for tag, name in ENDS.items():
             if tag not in tags:
-                ElementTree.SubElement(element, tag).text = name
+                sub_element(element, tag, name)
     if element.tag == 'script' and definition.identifier == 'material/script':
         for tag in {'uri', 'name'} - tags:
-            ElementTree.SubElement(element, tag).text = 'x'
+            sub_element(element, tag, 'x')
     for child in element:
         child_definition = definition.children.get(child.tag)
         if child_definition is not None:
@@ -130,13 +131,13 @@ def _add_joined(scope: ElementTree.Element) -> None:
     names = [child.get('name', _name_of(child)) for child in scope.findall(tag)]
     for name in ENDS.values():
         if name not in names:
-            joined = ElementTree.SubElement(scope, tag, name=name)
+            joined = sub_element(scope, tag, name=name)
             if tag == 'model':
-                ElementTree.SubElement(joined, 'link', name='l')
+                sub_element(joined, 'link', name='l')
     if scope.find('joint') is not None:
-        leader = ElementTree.SubElement(scope, 'joint', name='a_mimic', type='universal')
+        leader = sub_element(scope, 'joint', name='a_mimic', type='universal')
         for axis in ('axis', 'axis2'):
-            ElementTree.SubElement(leader, axis)
+            sub_element(leader, axis)
 
 
 def _name_of(element: ElementTree.Element) -> str:
