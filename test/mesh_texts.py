@@ -31,7 +31,7 @@ usemtl red
 f 1/1 2/2 3/3
 """
 MTL = 'newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n'
-STL = """solid s
+_STL = """solid s
 facet normal 0 0 1
 outer loop
 vertex 0 0 0
@@ -59,6 +59,11 @@ DAE = """<?xml version="1.0"?>
 """
 BUFFER = struct.pack('<9f', 0, 0, 0, 1, 0, 0, 0, 2, 0)
 IN_FILE = 'data:application/octet-stream;base64,' + base64.b64encode(BUFFER).decode()
+
+
+def stl(y=2):
+    """Return a triangle in the text of STL, as wide as y."""
+    return _STL.format(y=y)
 
 
 def gltf(uri='points.bin', count=3, with_view=True, scale=1.0):

@@ -56,7 +56,7 @@ def test_meshes_are_read_however_the_program_is_started(started, tmp_path):
     for name in ('viser', 'trimesh'):
         pytest.importorskip(name, reason=f'needs {name}')
     (tmp_path / 'mesh.sdf').write_text(MESH)
-    (tmp_path / 'a.stl').write_text(mesh_texts.STL.format(y=2))
+    (tmp_path / 'a.stl').write_text(mesh_texts.stl())
     command, path = started
     done = subprocess.run(
         [*command, 'view', 'mesh.sdf', '-o', 'page.html'], cwd=tmp_path, text=True,

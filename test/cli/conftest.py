@@ -103,6 +103,26 @@ def run_main(files, monkeypatch, capsys):
 
 
 @pytest.fixture
+def run_on(run_main, files):
+    """Runs a command on a file with this text: ``run_on(text, 'poses', *arguments)``."""
+    def run(text, command, *arguments):
+        (files / 'model.sdf').write_text(text)
+        return run_main(command, 'model.sdf', *arguments)
+    return run
+
+
+@pytest.fixture
+def refused(run_main):
+    """Runs a command that must print one line of errors alone; returns it."""
+    def run(*arguments):
+        done = run_main(*arguments)
+        assert (done.returncode, done.stdout) == (1, '')
+        (line,) = done.stderr.splitlines()
+        return line
+    return run
+
+
+@pytest.fixture
 def convert(capsys, monkeypatch):
     """Run the command with arguments and lines; return exit code, output and errors."""
     def run(*arguments, lines='', stdin=None):

@@ -37,20 +37,6 @@ def parsed(run_main):
     return run
 
 
-@pytest.mark.parametrize(('arguments', 'code', 'reason'), [
-    (['none.sdf'], 1, 'FILE_READ'),
-    (['robot.sdf'], 1, 'robot.sdf:1: ELEMENT_MISSING: the joint_states of model "m" is on'),
-    (['two.sdf', '--world-name', 'w'], 1, 'two.sdf has a world; --model-name and --world-name'),
-    (['two.sdf', '--only', 'joint'], 2, '"joint" has another name than joints, poses, odometry'),
-    (['two.sdf', '-o', 'none/a.yaml'], 1, 'cannot write none/a.yaml'),
-])
-def test_wrong_input_gives_one_error(run_main, arguments, code, reason):
-    result = run_main('gz_bridge', *arguments)
-    assert result.returncode == code
-    assert reason in result.stderr
-    assert result.stdout == ''
-
-
 def test_entries_have_the_keys_of_ros_gz_bridge(parsed):
     entries = parsed('two.sdf', '--only', 'joints,commands')
     assert entries[0] == {

@@ -11,7 +11,7 @@ import xml.etree.ElementTree as ET
 from command_line import COMMAND, ENVIRONMENT
 from deadline import DEADLINE_S
 import pytest
-from sdf_texts import model_file
+from sdf_texts import model_file, write_files
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -54,6 +54,12 @@ def test_an_option_is_not_abbreviated(run_main):
     assert done.stderr.startswith('usage: sdf_pose check ')
 
 
+@pytest.fixture
+def large_file(files):
+    """The folder has a file of 200,000 links."""
+    write_files(files, large=model_file(''.join(f'<link name="l{i}"/>' for i in range(200_000))))
+
+
 LIMITED = """
 import sys
 from sdf_pose_bridge.cli import main
@@ -68,9 +74,8 @@ sys.exit(main.main())
     # The parser has not enough memory.
     ('memory_bytes=5 * 10**7', 'sdf_pose tree: this needs more than 50 MB of memory'),
 ])
+@pytest.mark.usefixtures('large_file')
 def test_a_file_that_needs_too_much_is_one_sentence(files, limit, message):
-    (files / 'large.sdf').write_text(model_file(''.join(
-        f'<link name="l{i}"/>' for i in range(200_000))), encoding='utf-8')
     done = subprocess.run(
         [sys.executable, '-c', LIMITED.format(limit), 'tree', 'large.sdf'], cwd=files,
         env=ENVIRONMENT, capture_output=True, text=True, timeout=DEADLINE_S, check=False)
@@ -84,9 +89,8 @@ def test_output_that_cannot_be_written_is_one_sentence(sdf_pose_in_shell):
         'sdf_pose: the output cannot be written: no space left on device\n')
 
 
-def test_a_lack_of_memory_is_one_sentence(sdf_pose_in_shell, files):
-    (files / 'large.sdf').write_text(model_file(''.join(
-        f'<link name="l{i}"/>' for i in range(200_000))), encoding='utf-8')
+@pytest.mark.usefixtures('large_file')
+def test_a_lack_of_memory_is_one_sentence(sdf_pose_in_shell):
     # Libraries alone have about 200 MB of addresses.
     done = sdf_pose_in_shell('tree large.sdf', 'ulimit -v 300000;', OPENBLAS_NUM_THREADS='1')
     assert done.returncode == 1

@@ -5,6 +5,7 @@
 import json
 
 import pytest
+from sdf_texts import joint, LINK, model_file, posed, TWO_LINKS
 
 
 def test_poses_prints_a_table(run_main):
@@ -37,20 +38,16 @@ def test_tables_of_several_files_have_their_names_above_them(run_main):
     ('a&#10;link  b', r'a\nlink  b'), ('\x9b31m', r'\x9b31m'), ('\u202egnp', r'\u202egnp'),
     ('größe', 'größe'),
 ])
-def test_name_cannot_forge_a_row_of_the_table(run_main, files, written, shown):
-    (files / 'evil.sdf').write_text(
-        f'<sdf version="1.9"><model name="m"><link name="{written}"/></model></sdf>')
-    lines = run_main('poses', 'evil.sdf').stdout.splitlines()
+def test_name_cannot_forge_a_row_of_the_table(run_on, written, shown):
+    lines = run_on(model_file(f'<link name="{written}"/>'), 'poses').stdout.splitlines()
     assert len(lines) == 3
     assert f'm::{shown} ' in lines[2]
 
 
-def test_json_has_ascii_only(run_main, files):
-    (files / 'evil.sdf').write_text(
-        '<sdf version="1.9"><model name="\x9b"><link name="l"/></model></sdf>')
-    done = run_main('poses', '--json', 'evil.sdf')
+def test_json_has_ascii_only(run_on):
+    done = run_on(model_file('<link name="\x9b"/>'), 'poses', '--json')
     assert done.stdout.isascii()
-    assert json.loads(done.stdout)['elements'][0]['name'] == '\x9b'
+    assert json.loads(done.stdout)['elements'][1]['name'] == 'm::\x9b'
 
 
 def test_poses_are_printed_relative_to_a_frame(run_main):
@@ -60,12 +57,11 @@ def test_poses_are_printed_relative_to_a_frame(run_main):
     assert elements[1]['pose'] == [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]
 
 
-@pytest.mark.parametrize('name', ['arm::hand', 'hand'])
-def test_the_reference_frame_has_its_name_in_sdf_or_tf(run_main, files, name):
-    (files / 'arm.sdf').write_text(
-        '<sdf version="1.9"><model name="arm"><link name="l"/><frame name="hand"><pose>1 0 0 0 0 0'
-        '</pose></frame></model></sdf>')
-    done = run_main('poses', '--json', '--relative-to', name, '--kinds', 'link', 'arm.sdf')
+@pytest.mark.parametrize('name', ['m::hand', 'hand'])
+def test_the_reference_frame_has_its_name_in_sdf_or_tf(run_on, name):
+    done = run_on(
+        model_file(LINK + posed('frame', 'hand', '1 0 0 0 0 0')), 'poses', '--json',
+        '--relative-to', name, '--kinds', 'link')
     (link,) = json.loads(done.stdout)['elements']
     assert link['pose'][:3] == [-1.0, 0.0, 0.0]
 
@@ -76,32 +72,30 @@ def test_an_unknown_frame_is_an_error_of_the_file(run_main):
     assert '"ff" names nothing in world "w"; did you mean "f"?' in done.stderr
 
 
-ARM = ('<sdf version="1.9"><model name="m"><link name="a"/><link name="b"/>'
-       '<joint name="j" type="prismatic"><parent>a</parent><child>b</child></joint></model></sdf>')
+ARM = model_file(
+    TWO_LINKS + joint('<parent>a</parent><child>b</child>', joint_type='prismatic'))
 
 
 @pytest.mark.parametrize(('argument', 'words'), [
     ('j', 'is not NAME=VALUE'), ('j=x', 'is not NAME=VALUE'), ('=1', '"" is not the name of'),
     ('i=1', '"i" is not the name of'), ('j=nan', 'must be finite'),
 ])
-def test_wrong_position_of_a_joint_is_refused(run_main, files, argument, words):
-    (files / 'arm.sdf').write_text(ARM)
-    done = run_main('poses', 'arm.sdf', '--joint', argument)
+def test_wrong_position_of_a_joint_is_refused(run_on, argument, words):
+    done = run_on(ARM, 'poses', '--joint', argument)
     assert done.returncode in (1, 2)
     assert words in done.stderr
 
 
-def test_poses_at_positions_of_joints(run_main, files):
-    (files / 'arm.sdf').write_text(ARM)
-    done = run_main('poses', 'arm.sdf', '--json', '--joint', 'j=7', '--joint', 'm::j=0.5')
+def test_poses_at_positions_of_joints(run_on):
+    done = run_on(ARM, 'poses', '--json', '--joint', 'j=7', '--joint', 'm::j=0.5')
     poses = {each['name']: each['pose'] for each in json.loads(done.stdout)['elements']}
     assert poses['m::b'][:3] == [0.0, 0.0, 0.5]
 
 
 @pytest.mark.parametrize('arguments', [(), ('--relative-to', 'none')])
-def test_a_position_beyond_the_limits_of_its_joint_is_a_warning(run_main, files, arguments):
+def test_a_position_beyond_the_limits_of_its_joint_is_a_warning(run_on, arguments):
     limit = '<axis><xyz>0 0 1</xyz><limit><lower>0</lower><upper>1</upper></limit></axis></joint>'
-    (files / 'arm.sdf').write_text(ARM.replace('</joint>', limit))
-    done = run_main('poses', 'arm.sdf', '--json', '--joint', 'j=2', *arguments)
+    done = run_on(
+        ARM.replace('</joint>', limit), 'poses', '--json', '--joint', 'j=2', *arguments)
     (warning,) = json.loads(done.stdout)['warnings']
     assert 'the position 2 of "j" is beyond its limits, 0 to 1' in warning['message']

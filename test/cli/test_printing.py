@@ -5,6 +5,7 @@
 import json
 
 import pytest
+from sdf_texts import LINK, model_file, write_files
 
 COMMANDS = ('check', 'poses', 'tree', 'graph', 'view', 'urdf', 'convert', 'diff', 'set')
 
@@ -36,9 +37,8 @@ def test_annotation_has_level_file_line_and_code(run_main):
 
 
 def test_text_of_a_file_cannot_end_an_annotation(run_main, files):
-    (files / 'a,b:c%\x1b.sdf').write_text(
-        '<sdf version="1.9"><model name="m"><link name="l"/><frame name="f" '
-        'attached_to="50%&#10;::error::"/></model></sdf>')
+    write_files(files, **{'a,b:c%\x1b': model_file(
+        LINK + '<frame name="f" attached_to="50%&#10;::error::"/>')})
     (line,) = run_main('check', '--format', 'github', 'a,b:c%\x1b.sdf').stdout.splitlines()
     assert line.startswith(r'::error file=a%2Cb%3Ac%25\x1b.sdf,line=1,')
     assert r'attached_to="50%25\n\x3a:error::"' in line

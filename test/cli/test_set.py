@@ -3,6 +3,7 @@
 """``sdf_pose set``: the file, what is printed, and the exit code."""
 
 import pytest
+from sdf_texts import INCLUDES_LEAF, LINK, link_with, model_file, write_files
 
 from sdf_pose_bridge import load
 
@@ -47,8 +48,7 @@ def test_a_name_that_two_elements_have_is_printed_once(set_pose, path):
     shapes = ''.join(
         f'<{tag} name="s"><geometry><sphere><radius>1</radius></sphere></geometry></{tag}>'
         for tag in ('visual', 'collision'))
-    path.write_text(
-        f'<sdf version="1.9"><model name="m"><link name="l">{shapes}</link></model></sdf>')
+    path.write_text(link_with(shapes))
     assert set_pose('m', *'100000').endswith('moved with it: m::l, m::l::s\n')
 
 
@@ -144,13 +144,10 @@ def test_an_invalid_file_is_not_written(run_main, files):
     assert (files / 'bad.sdf').read_text() == text
 
 
-def test_another_file_than_the_one_named_is_printed_first(run_main, path):
-    path.with_name('cell.sdf').write_text(
-        '<sdf version="1.9"><world name="w"><include><uri>model.sdf</uri></include></world></sdf>')
-    path.with_name('model.sdf').write_text(
-        '<sdf version="1.10"><model name="m"><link name="l"/></model></sdf>')
+def test_another_file_than_the_one_named_is_printed_first(run_main, files):
+    write_files(files, cell=INCLUDES_LEAF, leaf=model_file(LINK))
     done = run_main('set', 'cell.sdf', 'm::l', *'100000')
-    assert done.stdout.startswith('the pose is in model.sdf\n--- model.sdf\n')
+    assert done.stdout.startswith('the pose is in leaf.sdf\n--- leaf.sdf\n')
 
 
 @pytest.mark.parametrize(('redirection', 'reason'), [

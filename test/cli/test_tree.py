@@ -3,26 +3,24 @@
 """``sdf_pose tree``: the TF tree and the tree of scopes."""
 
 import pytest
+from sdf_texts import fixed_joint, model_file
 
-ARM = """<sdf version="1.10">
-  <model name="arm">
-    <frame name="tip" attached_to="hand"><pose relative_to="base">0 0 1 0 0 0</pose></frame>
-    <link name="base"/>
-    <link name="hand"><pose>0.5 0 0 0 0 1.5707963267948966</pose></link>
-    <joint name="j" type="revolute"><parent>base</parent><child>hand</child>
-      <axis><xyz>0 0 1</xyz></axis></joint>
-  </model>
-</sdf>
-"""
+ARM = """
+    <sdf version="1.9">
+      <model name="arm">
+        <frame name="tip" attached_to="hand"><pose relative_to="base">0 0 1 0 0 0</pose></frame>
+        <link name="base"/>
+        <link name="hand"><pose>0.5 0 0 0 0 1.5707963267948966</pose></link>
+        <joint name="j" type="revolute"><parent>base</parent><child>hand</child><axis/></joint>
+      </model>
+    </sdf>"""
 
 
 @pytest.fixture
-def tree(run_main, files):
+def tree(run_on):
     """Lines that ``sdf_pose tree`` prints for the arm, without its head."""
-    (files / 'arm.sdf').write_text(ARM)
-
     def lines(*arguments):
-        done = run_main('tree', 'arm.sdf', *arguments)
+        done = run_on(ARM, 'tree', *arguments)
         assert (done.returncode, done.stderr) == (0, '')
         return done.stdout.splitlines()[1:]
     return lines
@@ -40,10 +38,8 @@ def test_invalid_file_is_reported_and_the_next_one_printed(run_main):
 
 
 @pytest.mark.parametrize('option', [(), ('--scope',)])
-def test_unknown_model_is_an_error(run_main, option):
-    done = run_main('tree', '--model', 'n', *option, 'good.sdf')
-    assert (done.returncode, done.stdout) == (1, '')
-    assert 'there is no model "n"' in done.stderr
+def test_unknown_model_is_an_error(refused, option):
+    assert 'there is no model "n"' in refused('tree', '--model', 'n', *option, 'good.sdf')
 
 
 @pytest.mark.parametrize('depth', ['-1', 'x'])
@@ -53,13 +49,11 @@ def test_depth_must_be_a_number_of_levels(run_main, depth):
     assert f'"{depth}" is not a number of levels' in done.stderr
 
 
-def test_name_cannot_forge_a_line(run_main, files):
-    (files / 'evil.sdf').write_text(
-        '<sdf version="1.9"><model name="m"><link name="a&#10;b\x9b"/></model></sdf>')
-    for option in ((), ('--scope',)):
-        done = run_main('tree', 'evil.sdf', *option)
-        assert r'a\nb\x9b ' in done.stdout
-        assert len(done.stdout.splitlines()) == (4 if option else 3)
+@pytest.mark.parametrize(('options', 'count'), [((), 3), (('--scope',), 4)])
+def test_name_cannot_forge_a_line(run_on, options, count):
+    done = run_on(model_file('<link name="a&#10;b\x9b"/>'), 'tree', *options)
+    assert r'a\nb\x9b ' in done.stdout
+    assert len(done.stdout.splitlines()) == count
 
 
 def test_frames_are_below_their_parents(tree):
@@ -92,10 +86,9 @@ def test_scope_of_some_kinds(tree):
     assert names_in(tree('--scope', '--kinds', 'link')) == ['__root__', 'base', 'hand']
 
 
-def test_scope_has_worlds_that_are_empty(run_main, files):
-    (files / 'worlds.sdf').write_text(
-        '<sdf version="1.10"><world name="v"/><world name="w"/></sdf>')
-    done = run_main('tree', '--scope', 'worlds.sdf')
+def test_scope_has_worlds_that_are_empty(run_on):
+    text = '<sdf version="1.10"><world name="v"/><world name="w"/></sdf>'
+    done = run_on(text, 'tree', '--scope')
     assert names_in(done.stdout.splitlines()[1:]) == ['v', 'w']
 
 
@@ -126,14 +119,11 @@ def test_terminal_has_colors_unless_the_user_wants_none(on_terminal, environment
     assert ('\x1b' in on_terminal(80, 'tree', 'good.sdf', **environment)) is not bool(environment)
 
 
-def test_chain_of_thousands_of_links_is_printed(run_main, files):
+def test_chain_of_thousands_of_links_is_printed(run_on):
     count = 2000
     links = ''.join(f'<link name="l{number}"/>' for number in range(count))
     joints = ''.join(
-        f'<joint name="j{number}" type="fixed"><parent>l{number}</parent>'
-        f'<child>l{number + 1}</child></joint>' for number in range(count - 1))
-    (files / 'chain.sdf').write_text(
-        f'<sdf version="1.9"><model name="m">{links}{joints}</model></sdf>')
-    lines = run_main('tree', 'chain.sdf').stdout.splitlines()
+        fixed_joint(f'j{number}', f'l{number}', f'l{number + 1}') for number in range(count - 1))
+    lines = run_on(model_file(links + joints), 'tree').stdout.splitlines()
     assert len(lines) == count + 2
     assert max(map(len, lines)) < 250

@@ -9,8 +9,9 @@ ARM = model_file(
     '<link name="base"><visual name="v"><geometry><plane/></geometry></visual></link>'
     '<link name="hand"/><frame name="tip" attached_to="hand"/>'
     '<joint name="elbow" type="revolute"><parent>base</parent><child>hand</child></joint>')
-CELL = world_file(''.join(
-    f'<model name="{name}"><link name="l"/></model>' for name in ('table', 'robot')))
+CELL = world_file("""
+    <model name="table"><link name="l"/></model>
+    <model name="robot"><link name="l"/></model>""")
 
 
 @pytest.fixture(autouse=True)
@@ -18,27 +19,6 @@ def write_files(files):
     """The folder has an arm and a cell with two models."""
     (files / 'arm.sdf').write_text(ARM)
     (files / 'cell.sdf').write_text(CELL)
-
-
-@pytest.mark.parametrize(('arguments', 'reason'), [
-    (['bad.sdf'], 'bad.sdf:3: ELEMENT_INVALID'),
-    (['none.sdf'], 'FILE_READ'),
-    (['cell.sdf'], 'the file has the models "table", "robot"; choose one by --model'),
-    (['cell.sdf', '--model', 'rubot'], 'there is no model "rubot" to publish; did you mean'),
-    (['arm.sdf', '-o', 'none/arm.urdf'],
-     'sdf_pose urdf: cannot write none/arm.urdf: No such file or directory'),
-])
-def test_wrong_input_gives_one_error(run_main, arguments, reason):
-    result = run_main('urdf', *arguments)
-    assert result.returncode == 1
-    assert reason in result.stderr
-    assert result.stdout == ''
-
-
-def test_separator_must_not_be_empty(run_main):
-    result = run_main('urdf', 'arm.sdf', '--frame-separator', '')
-    assert result.returncode == 2
-    assert 'at least one character' in result.stderr
 
 
 def test_urdf_is_printed_and_warnings_beside_it(run_main):

@@ -6,6 +6,7 @@ import json
 import math
 
 import pytest
+from sdf_texts import model_file
 
 pytest.importorskip('trimesh', reason='needs trimesh')
 pytest.importorskip('viser', reason='needs viser')
@@ -25,8 +26,7 @@ BOX = '<geometry><box/></geometry>'
 def drawing_of(server, mesh_reader):
     """Returns the drawing of a model with these elements, and its scene."""
     def draw(content, hidden=()):
-        text = f'<sdf version="1.11"><model name="m">{content}</model></sdf>'
-        shown = ShownScene(load_text(text.encode(), 'm.sdf', shapes=True), TfOptions())
+        shown = ShownScene(load_text(model_file(content), 'm.sdf', shapes=True), TfOptions())
         return Drawing(
             server.scene, '/drawing', VisiblePart(shown, mesh_reader, hidden), print), shown
     return draw

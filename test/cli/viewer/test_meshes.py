@@ -48,7 +48,7 @@ def test_other_formats(mesh, name):
 
 @pytest.mark.filterwarnings('ignore:invalid value:RuntimeWarning')
 def test_coordinate_that_is_not_finite(mesh):
-    assert 'it has no surface' in mesh('mesh.stl', mesh_texts.STL.format(y='inf')).reason
+    assert 'it has no surface' in mesh('mesh.stl', mesh_texts.stl('inf')).reason
 
 
 @pytest.mark.filterwarnings('ignore:overflow:RuntimeWarning')
@@ -123,7 +123,7 @@ def test_part_of_a_dae_file_has_the_name_of_its_node(mesh, node, name):
 
 
 def test_stl(mesh):
-    found = mesh('mesh.STL', mesh_texts.STL.format(y=2))
+    found = mesh('mesh.STL', mesh_texts.stl())
     assert extent(found) == pytest.approx((1, 2, 0))
     assert found.parts[0].rgba == ()
 
@@ -233,31 +233,31 @@ def test_mesh_that_cannot_be_read(named):
 def test_small_file_that_needs_much_memory(named):
     assert 'memory' in named('a.gltf', mesh_texts.gltf(
         mesh_texts.IN_FILE, count=10**9, with_view=False)).reason
-    assert not named('b.stl', mesh_texts.STL.format(y=1)).reason
+    assert not named('b.stl', mesh_texts.stl(1)).reason
 
 
 def test_mesh_is_remembered_until_its_file_changes(named):
-    first = named('a.stl', mesh_texts.STL.format(y=1))
+    first = named('a.stl', mesh_texts.stl(1))
     assert named('a.stl') is first
-    assert named('a.stl', mesh_texts.STL.format(y=10)) is not first
+    assert named('a.stl', mesh_texts.stl(10)) is not first
 
 
 def test_kept_meshes_are_not_too_large_together(named, reader, monkeypatch):
-    named('a.stl', mesh_texts.STL.format(y=1))
+    named('a.stl', mesh_texts.stl(1))
     size = reader._kept_bytes
     monkeypatch.setattr(meshes, 'MOST_BYTES_KEPT', 2 * size)
     for y, count in ((2, 2), (3, 1), (4, 2)):
-        named('a.stl', mesh_texts.STL.format(y=y) + y * ' ')
+        named('a.stl', mesh_texts.stl(y) + y * ' ')
         assert (len(reader._kept), reader._kept_bytes) == (count, count * size)
 
 
 def test_meshes_have_one_processor_time_together(named, reader, monkeypatch):
-    first = named('a.stl', mesh_texts.STL.format(y=1))
+    first = named('a.stl', mesh_texts.stl(1))
     assert reader.left_s < meshes.ALLOWANCE.processor_s
     reader.left_s = 0.0
     assert named('a.stl') is first
     reason = 'all meshes together need more than 20 s of processor time'
-    assert named('b.stl', mesh_texts.STL.format(y=2)).reason == reason
+    assert named('b.stl', mesh_texts.stl()).reason == reason
     monkeypatch.setattr(meshes, 'mesh_and_time', endless)
     reader.left_s = 0.5
     assert named('b.stl').reason == reason

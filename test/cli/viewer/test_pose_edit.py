@@ -50,20 +50,24 @@ class Change:
 
 
 @pytest.fixture
-def written(server):
-    """The poses that were written, and the edit."""
-    poses = []
+def written():
+    """The poses that were written."""
+    return []
 
+
+@pytest.fixture
+def edit(server, written):
     def change(scene, element, pose, measured):
         """Refuse some poses, as a file cannot say them."""
         if scene.names[element].endswith('fixed') or pose.z > 5.0:
             raise ElementInvalidError('no', scene.place(element))
-        return PoseChange(Change(pose, poses), 1, scene_with(pose))
+        return PoseChange(Change(pose, written), 1, scene_with(pose))
 
     def show_file(shown):
         show(edit, scene=shown.loaded, pose=shown.pose_of(edit._frame))
+
     edit = PoseEdit(server, ShownScene(SCENE, TfOptions()), change, Events(Event()), show_file)
-    return poses, edit
+    return edit
 
 
 def show(edit, name='free', *, x=0.0, pose=POSE, scene=SCENE, units=UNITS):
@@ -86,8 +90,7 @@ def texts(edit):
     return [number.value for number in edit._numbers]
 
 
-def test_cancelled_edit_moves_the_gizmo_back(written):
-    _, edit = written
+def test_cancelled_edit_moves_the_gizmo_back(edit):
     show(edit)
     drag(edit, 1.0)
     assert texts(edit)[:3] == ['0.0000', '0.0000', '1.0000']
@@ -98,8 +101,7 @@ def test_cancelled_edit_moves_the_gizmo_back(written):
     assert texts(edit)[0] == '0.1235'
 
 
-def test_only_frames_that_can_be_placed_are_edited(written):
-    _, edit = written
+def test_only_frames_that_can_be_placed_are_edited(edit):
     for name, is_possible in (('free', True), ('fixed', False), ('free', True)):
         show(edit, name)
         assert edit._gizmo.visible is is_possible
@@ -109,8 +111,7 @@ def test_only_frames_that_can_be_placed_are_edited(written):
     assert not edit._gizmo.visible
 
 
-def test_numbers_that_were_not_typed_stay_exact(written):
-    poses, edit = written
+def test_numbers_that_were_not_typed_stay_exact(edit, written):
     units = Units(MILLIMETRES, DEGREES)
     show(edit, units=units)
     assert texts(edit) == ['123.5', '0.0', '0.0', '0.00', '0.00', '7.07']
@@ -118,12 +119,11 @@ def test_numbers_that_were_not_typed_stay_exact(written):
     edit._numbers[3].value = '90'
     show(edit, units=units)
     edit.actions['write to file']()
-    assert poses[0][:3] == pytest.approx((0.123456789, 0.25, 0.0), abs=1e-15)
-    assert rpy_from_quaternion(poses[0][3:]) == pytest.approx((math.pi / 2, 0.0, 0.123456789))
+    assert written[0][:3] == pytest.approx((0.123456789, 0.25, 0.0), abs=1e-15)
+    assert rpy_from_quaternion(written[0][3:]) == pytest.approx((math.pi / 2, 0.0, 0.123456789))
 
 
-def test_typed_digits_stay(written):
-    _, edit = written
+def test_typed_digits_stay(edit):
     show(edit)
     for typed in ('0.123456', '0.1234561', ' 6.1e-05', '-.25'):
         edit._numbers[0].value = typed
@@ -134,8 +134,7 @@ def test_typed_digits_stay(written):
 
 @pytest.mark.parametrize(
     'typed', ['', '-', '1/2', '1,234.5', '-0,25', '1 2', '1_0', 'nan', '1e999'])
-def test_text_that_is_no_number_is_refused(written, typed):
-    poses, edit = written
+def test_text_that_is_no_number_is_refused(edit, written, typed):
     show(edit)
     drag(edit, 1.0)
     edit._numbers[0].value = typed
@@ -144,7 +143,7 @@ def test_text_that_is_no_number_is_refused(written, typed):
     assert (texts(edit)[0], edit.pose, [*edit.actions]) == (typed, Pose(z=1.0), ['cancel'])
     assert 'class="errors"' in edit.html
     write()
-    assert poses == []
+    assert written == []
     edit.actions['cancel']()
     show(edit)
     assert (texts(edit)[0], [*edit.actions]) == ('0.1235', [])
@@ -155,8 +154,7 @@ def test_text_that_is_no_number_is_refused(written, typed):
     ('<pose>1 2 3 0 0 0.5</pose>', 0.5), ('1 2 3 0 0 30', math.radians(30)),
     ('{X 1000, Y 2000, Z 3000, A 30, B 0, C 0}', math.radians(30)),
     ('x: 0 y: 0 z: 1 w: 0', math.pi)])
-def test_pose_that_is_pasted_into_a_field_is_read_as_by_the_commands(written, pasted, yaw):
-    _, edit = written
+def test_pose_that_is_pasted_into_a_field_is_read_as_by_the_commands(edit, pasted, yaw):
     units, pose = Units(angle=DEGREES), Pose(1.0, 2.0, 3.0)
     show(edit, pose=pose, units=units)
     edit._numbers[2].value = pasted
@@ -166,8 +164,7 @@ def test_pose_that_is_pasted_into_a_field_is_read_as_by_the_commands(written, pa
     assert texts(edit)[2] == '3.0000'
 
 
-def test_quaternion_that_is_pasted_and_not_of_length_one_is_asked_about(written):
-    _, edit = written
+def test_quaternion_that_is_pasted_and_not_of_length_one_is_asked_about(edit):
     show(edit)
     edit._numbers[2].value = 'x: 0 y: 0 z: 45 w: 1'
     show(edit)
@@ -175,8 +172,7 @@ def test_quaternion_that_is_pasted_and_not_of_length_one_is_asked_about(written)
     assert [*edit.actions] == ['write anyway', 'cancel']
 
 
-def test_refused_text_goes_when_another_frame_is_selected(written):
-    _, edit = written
+def test_refused_text_goes_when_another_frame_is_selected(edit):
     show(edit)
     edit._numbers[1].value = '-'
     show(edit)
@@ -184,16 +180,14 @@ def test_refused_text_goes_when_another_frame_is_selected(written):
     assert texts(edit)[1] == '0.0000'
 
 
-def test_typed_numbers_in_another_unit_are_asked_about(written):
-    _, edit = written
+def test_typed_numbers_in_another_unit_are_asked_about(edit):
     show(edit)
     edit._numbers[5].value = '90'
     show(edit)
     assert 'the angles 0 0 90 are radians; did you mean degrees?' in edit.html
 
 
-def test_numbers_are_relative_to_the_reference(written):
-    _, edit = written
+def test_numbers_are_relative_to_the_reference(edit):
     show(edit, x=1.0)
     assert texts(edit)[0] == '-0.8765'
     edit._numbers[0].value = '-1'
@@ -205,8 +199,7 @@ def test_numbers_are_relative_to_the_reference(written):
     ('free', {'scene': scene_with(Pose())}, True), ('free', {'pose': Pose()}, False),
     ('free', {'x': 1.0, 'units': Units(angle=DEGREES)}, True), ('l', {}, False)])
 def test_new_pose_stays_while_its_frame_is_selected_and_does_not_move(
-        written, name, options, stays):
-    _, edit = written
+        edit, name, options, stays):
     show(edit)
     drag(edit, 1.0)
     show(edit, name, **options)
@@ -214,25 +207,23 @@ def test_new_pose_stays_while_its_frame_is_selected_and_does_not_move(
     assert ('class="difference"' in edit.html) is stays
 
 
-def test_scene_with_a_new_pose_is_shown_until_it_is_cancelled(written):
-    poses, edit = written
+def test_scene_with_a_new_pose_is_shown_until_it_is_cancelled(edit, written):
     show(edit)
     assert edit.shown_ahead is edit._shown
     drag(edit, 1.0)
     assert not edit.look_ahead()
     assert edit.shown_ahead.pose_of(edit._frame) == Pose(z=1.0)
-    assert poses == []
+    assert written == []
     edit.actions['cancel']()
     assert edit.shown_ahead is edit._shown
 
 
-def test_pose_that_cannot_be_written_is_an_error_before_it_is(written):
-    poses, edit = written
+def test_pose_that_cannot_be_written_is_an_error_before_it_is(edit, written):
     show(edit)
     drag(edit, 9.0)
     assert 'class="errors"' in edit.html
     edit.actions['write to file']()
-    assert poses == []
+    assert written == []
 
 
 def table(edit):
@@ -241,9 +232,7 @@ def table(edit):
                  strict=True)]
 
 
-def test_what_is_written_is_shown_beside_what_it_replaced(written):
-    poses, edit = written
-
+def test_what_is_written_is_shown_beside_what_it_replaced(edit, written):
     def buttons():
         return re.findall('<button[^>]*>(.*?)</button>', edit.html)
     show(edit)
@@ -253,7 +242,7 @@ def test_what_is_written_is_shown_beside_what_it_replaced(written):
     assert numbers[1] == ('0.0000', '0.0000', '1.0000', '0.0000', '0.0000', '0.0000')
     assert buttons() == [*edit.actions] == ['write to file', 'cancel']
     edit.actions['write to file']()
-    assert (poses, edit.pose, buttons()) == ([Pose(z=1.0)], None, ['undo the last write'])
+    assert (written, edit.pose, buttons()) == ([Pose(z=1.0)], None, ['undo the last write'])
     assert 'written to m.sdf:1<' in edit.html
     assert (table(edit), texts(edit)) == (numbers, [*numbers[1]])
     # The file is read again.
@@ -264,8 +253,7 @@ def test_what_is_written_is_shown_beside_what_it_replaced(written):
     assert table(edit) == []
 
 
-def test_table_of_a_written_pose_goes_with_the_frame(written):
-    _, edit = written
+def test_table_of_a_written_pose_goes_with_the_frame(edit):
     show(edit)
     drag(edit, 1.0)
     edit.actions['write to file']()
@@ -273,8 +261,7 @@ def test_table_of_a_written_pose_goes_with_the_frame(written):
     assert table(edit) == []
 
 
-def test_frame_of_the_numbers_is_named(written):
-    _, edit = written
+def test_frame_of_the_numbers_is_named(edit):
     edit.refresh(ShownScene(SCENE, TfOptions()), -1, -1, UNITS)
     assert 'select a frame' in edit._frame_of_numbers.content
     show(edit)

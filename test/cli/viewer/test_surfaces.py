@@ -89,7 +89,7 @@ def test_what_is_transparent_is_not_drawn(drawn):
 
 
 def test_mesh_with_its_scale(drawn, tmp_path):
-    (tmp_path / 'a.stl').write_text(mesh_texts.STL.format(y=2))
+    (tmp_path / 'a.stl').write_text(mesh_texts.stl())
     _, (surface,), not_drawn = drawn(MESH, MESH)
     assert (len(surface.elements), surface.scales[0].tolist()) == (2, [1, 1, -2])
     assert not not_drawn

@@ -31,17 +31,21 @@ ROW = [(x, 0, 0) for x in (*range(20), 100)]
 
 
 @pytest.mark.parametrize(('origins', 'boxes', 'robot', 'bounds'), [
-    pytest.param([], [], [], [[0, 0, 0], [0, 0, 0]], id='nothing'),
-    pytest.param([(0, 0, 0), (1, 2, 3)], [], [], [[0, 0, 0], [1, 2, 3]], id='few frames'),
-    pytest.param([(0, 0, 0)], [CUBE], [], CUBE.tolist(), id='the body of a single frame'),
-    pytest.param(ROW, [], [], [[0, 0, 0], [19, 0, 0]], id='a frame far from many'),
-    pytest.param(ROW, [], [(100, 0, 0)], [[0, 0, 0], [100, 0, 0]], id='such a frame of a robot'),
-    pytest.param([(0, 0, 0), (0.5, 0.5, 2)], [FLOOR, BODY], [],
-                 [[-0.5, -0.5, 0], [0.5, 0.5, 2]], id='a large body'),
-    pytest.param([(0, 0, 0), (0.5, 0.5, 2)], [DISTANT, BODY], [],
-                 [[-0.5, -0.5, 0], [0.5, 0.5, 2]], id='a distant body'),
-    pytest.param([(0, 0, 0)], WHEELS, [(0, 0, 0), (0, -3, 0.5), (0, 3, 0.5)],
-                 [[-0.1, -3.5, 0], [0.1, 3.5, 1]], id='bodies of a robot with one frame')])
+    ([], [], [], [[0, 0, 0], [0, 0, 0]]),
+    ([(0, 0, 0), (1, 2, 3)], [], [], [[0, 0, 0], [1, 2, 3]]),
+    ([(0, 0, 0)], [CUBE], [], CUBE.tolist()),
+    (ROW, [], [], [[0, 0, 0], [19, 0, 0]]),
+    (ROW, [], [(100, 0, 0)], [[0, 0, 0], [100, 0, 0]]),
+    ([(0, 0, 0), (0.5, 0.5, 2)], [FLOOR, BODY], [],
+                 [[-0.5, -0.5, 0], [0.5, 0.5, 2]]),
+    ([(0, 0, 0), (0.5, 0.5, 2)], [DISTANT, BODY], [],
+                 [[-0.5, -0.5, 0], [0.5, 0.5, 2]]),
+    ([(0, 0, 0)], WHEELS, [(0, 0, 0), (0, -3, 0.5), (0, 3, 0.5)],
+                 [[-0.1, -3.5, 0], [0.1, 3.5, 1]]),
+], ids=[
+    'nothing', 'few frames', 'the body of a single frame', 'a frame far from many',
+    'such a frame of a robot', 'a large body', 'a distant body',
+    'bodies of a robot with one frame'])
 def test_first_view(origins, boxes, robot, bounds):
     assert bounds_of_interest(*(
         np.array(each, float).reshape(-1, *shape) for each, shape in (
