@@ -108,13 +108,9 @@ def extended_quaternions(rpy):
 
 def largest_angle(quats_a, quats_b):
     """Return the largest angle between two arrays of rotations, given as quaternions."""
-    a = np.asarray(quats_a, dtype=np.longdouble)
-    b = np.asarray(quats_b, dtype=np.longdouble)
-    a = a / np.sqrt(np.sum(a * a, axis=1))[:, None]
-    b = b / np.sqrt(np.sum(b * b, axis=1))[:, None]
-    chords = np.minimum(
-        np.sqrt(np.sum((a - b) ** 2, axis=1)), np.sqrt(np.sum((a + b) ** 2, axis=1))
-    )
+    a, b = (np.asarray(quats, dtype=np.longdouble) for quats in (quats_a, quats_b))
+    a, b = (quats / np.linalg.norm(quats, axis=1, keepdims=True) for quats in (a, b))
+    chords = np.minimum(np.linalg.norm(a - b, axis=1), np.linalg.norm(a + b, axis=1))
     return float(np.max(4.0 * np.arcsin(np.minimum(0.5 * chords, 1.0)), initial=0.0))
 
 

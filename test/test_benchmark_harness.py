@@ -16,6 +16,8 @@ from benchmarks.harness import (
     wait_until,
 )
 
+compared = benchmark('ours', counterpart='theirs', goal=AtMostTimes(2.0))
+
 
 @pytest.fixture(autouse=True)
 def short_runs(monkeypatch):
@@ -23,7 +25,7 @@ def short_runs(monkeypatch):
 
 
 def test_what_is_not_installed_is_skipped_and_named():
-    @benchmark('ours', counterpart='theirs', goal=AtMostTimes(2.0))
+    @compared
     def missing():
         import no_such_library
         yield no_such_library.ours, no_such_library.theirs
@@ -36,7 +38,7 @@ def test_what_is_not_installed_is_skipped_and_named():
 def test_a_benchmark_does_not_wait_forever(monkeypatch):
     monkeypatch.setattr(harness, 'DEADLINE_S', 0.05)
 
-    @benchmark('ours', counterpart='theirs', goal=AtMostTimes(2.0))
+    @compared
     def alone():
         wait_until(lambda: False, 'nobody subscribed')
         yield
@@ -45,7 +47,7 @@ def test_a_benchmark_does_not_wait_forever(monkeypatch):
 
 
 def test_other_errors_are_not_hidden():
-    @benchmark('ours', counterpart='theirs', goal=AtMostTimes(2.0))
+    @compared
     def broken():
         yield lambda: 1 / 0, lambda: None
 
@@ -87,7 +89,7 @@ def test_goals_judge_the_medians(goal, ours, theirs, reached, ratio):
 
 
 def test_what_a_function_has_measured_itself_counts():
-    @benchmark('ours', counterpart='theirs', goal=AtMostTimes(2.0))
+    @compared
     def measuring():
         yield lambda: Took(3.0), lambda: Took(2.0)
 

@@ -22,9 +22,13 @@ from sdf_pose_bridge.sdformat.versions import NEWEST, OLDEST
 ROOT = Path(__file__).resolve().parents[1]
 
 
+def text_of(path):
+    return (ROOT / path).read_text(encoding='utf-8')
+
+
 def names_in(page):
     """Return the words between back quotes, also those of commands: the first two."""
-    text = (ROOT / 'docs' / page).read_text(encoding='utf-8')
+    text = text_of(f'docs/{page}')
     return {*re.findall(r'`([^`\n]+)`', text), *re.findall(r'`(\S+)[^`\n]*`', text)}
 
 
@@ -59,13 +63,13 @@ NAMES = {
 @pytest.mark.parametrize('page', [
     'README.md', 'docs/comparison.md', 'docs/errors.md', 'docs/what_is_read.md'])
 def test_versions_of_sdformat(page):
-    text = (ROOT / page).read_text(encoding='utf-8')
+    text = text_of(page)
     assert set(re.findall(r'\b1\.\d+ to 1\.\d+\b', text)) == {f'{OLDEST} to {NEWEST}'}
 
 
 @pytest.mark.parametrize('command', COMMANDS)
 def test_command(command):
-    text = (ROOT / 'docs/command_line.md').read_text(encoding='utf-8')
+    text = text_of('docs/command_line.md')
     assert f'sdf_pose {command} ' in text
 
 
@@ -73,7 +77,7 @@ def test_command(command):
     (command, option) for command, parser in COMMANDS.items()
     for option in parser._option_string_actions if option.startswith('--') and option != '--help'])
 def test_option(command, option):
-    text = (ROOT / 'docs/command_line.md').read_text(encoding='utf-8')
+    text = text_of('docs/command_line.md')
     assert option in text, f'{option} of {command}'
 
 
@@ -85,19 +89,19 @@ def test_name(page, name):
 
 @pytest.mark.parametrize('name', POSE_FORMATS)
 def test_format_of_the_service(name):
-    text = (ROOT / 'sdf_pose_bridge_interfaces/srv/ConvertPoses.srv').read_text(encoding='utf-8')
+    text = text_of('sdf_pose_bridge_interfaces/srv/ConvertPoses.srv')
     assert re.search(rf'^#   {name} ', text, re.MULTILINE)
 
 
 @pytest.mark.parametrize('kind', [
     kind for kind in Kind if kind not in (Kind.ROOT, Kind.WORLD, Kind.ACTOR)])
 def test_kind(kind):
-    text = (ROOT / 'docs/ros_interface.md').read_text(encoding='utf-8')
+    text = text_of('docs/ros_interface.md')
     assert kind.label in next(line for line in text.splitlines() if line.startswith('| `kinds`'))
 
 
 def test_the_page_of_the_api_lists_all_exported_names_and_modules_that_exist():
-    text = (ROOT / 'docs/python_api.md').read_text(encoding='utf-8')
+    text = text_of('docs/python_api.md')
     listed = re.findall(r'auto(?:function|class|exception):: sdf_pose_bridge\.(\w+)$', text, re.M)
     assert sorted(listed) == sorted(sdf_pose_bridge.__all__)
     for module, members in re.findall(r'automodule:: (\S+)\n +:members: *(.*)', text):

@@ -43,6 +43,13 @@ def make_process(pipe):
     process.close()
 
 
+@pytest.fixture
+def lasting(process):
+    """A process that still answers at the end of the test."""
+    yield process
+    assert process.call(AMPLE, pow, 2, 2) == 4
+
+
 @pytest.fixture(name='busy')
 def start_busy_call(process, pipe):
     """Starts a call that says when it runs; ``with busy(allowance, code) as (call, pid)``."""
@@ -94,12 +101,11 @@ def test_preparations_are_made_once_in_another_process(monkeypatch):
     process.close()
 
 
-def test_an_exception_is_raised_here_with_its_traceback(process):
+def test_an_exception_is_raised_here_with_its_traceback(lasting):
     with pytest.raises(ZeroDivisionError) as caught:
-        process.call(AMPLE, divmod, 1, 0)
+        lasting.call(AMPLE, divmod, 1, 0)
     assert 'divmod' not in str(caught.value)
     assert 'in _answer' in str(caught.value.__cause__)
-    assert process.call(AMPLE, pow, 2, 2) == 4
 
 
 def test_an_exception_that_cannot_be_pickled(process):
@@ -138,11 +144,10 @@ def test_a_call_ends_with_its_block(busy):
      'more than 500 MB of memory'),
     (SHORT, SPIN, 'more than 1 s of processor time'),
 ])
-def test_a_call_that_exceeds_a_limit_is_ended(process, allowance, code, message):
+def test_a_call_that_exceeds_a_limit_is_ended(lasting, allowance, code, message):
     with pytest.raises(LimitExceededError) as caught:
-        process.call(allowance, exec, code, {})
+        lasting.call(allowance, exec, code, {})
     assert str(caught.value) == message
-    assert process.call(AMPLE, pow, 2, 2) == 4
 
 
 def test_a_process_that_reads_much_may_take_longer(process, pipe, monkeypatch):
@@ -178,15 +183,14 @@ def test_other_threads_run_while_much_is_answered(process):
 
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_to_the_group_is_not_for_it(process, busy, number):
+def test_a_signal_to_the_group_is_not_for_it(lasting, busy, number):
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, [])
     with busy(AMPLE, 'import signal; signal.sigwait([signal.SIGUSR1])') as (call, pid):
         os.kill(pid, number)
-        os.kill(process._pid, number)
+        os.kill(lasting._pid, number)
         os.kill(pid, signal.SIGUSR1)
         with pytest.raises(ProcessEndedError, match='by signal 10'):
             call.result()
-    assert process.call(AMPLE, pow, 2, 2) == 4
     assert signal.pthread_sigmask(signal.SIG_BLOCK, []) == mask
 
 
@@ -218,7 +222,7 @@ def test_a_process_that_ends_before_it_begins_is_an_error(function, message):
     process.close()
 
 
-def test_a_process_that_is_stopped_while_it_is_busy_is_killed(process, busy, monkeypatch):
+def test_a_process_that_is_stopped_while_it_is_busy_is_killed(lasting, busy, monkeypatch):
     monkeypatch.setattr(limited_process, 'WAITING_S', 0.0)
     # The time is over before the caller knows of the process.
     at_once = AMPLE._replace(processor_s=0.0)
@@ -226,25 +230,22 @@ def test_a_process_that_is_stopped_while_it_is_busy_is_killed(process, busy, mon
           busy(at_once, 'import signal; signal.raise_signal(signal.SIGSTOP)') as (call, pid)):
         call.result()
     assert has_ended(pid)
-    assert process.call(AMPLE, pow, 2, 2) == 4
 
 
-def test_a_process_that_is_stopped_in_the_middle_of_its_answer_is_killed(process, monkeypatch):
+def test_a_process_that_is_stopped_in_the_middle_of_its_answer_is_killed(lasting, monkeypatch):
     monkeypatch.setattr(limited_process, 'WAITING_S', 0.0)
     with pytest.raises(ProcessEndedError, match=NO_ANSWER) as caught:
-        process.call(SHORT, StopsWhenPickled)
+        lasting.call(SHORT, StopsWhenPickled)
     assert caught.value.is_temporary
-    assert process.call(AMPLE, pow, 2, 2) == 4
 
 
-def test_a_waiting_process_that_is_stopped_keeps_nobody_waiting_longer(process, monkeypatch):
+def test_a_waiting_process_that_is_stopped_keeps_nobody_waiting_longer(lasting, monkeypatch):
     monkeypatch.setattr(limited_process, 'WAITING_S', 0.0)
-    os.kill(process._pid, signal.SIGSTOP)
+    os.kill(lasting._pid, signal.SIGSTOP)
     for _ in range(2):
         with pytest.raises(ProcessEndedError, match=NO_ANSWER):
-            process.call(SHORT, pow, 2, 2)
-    os.kill(process._pid, signal.SIGCONT)
-    assert process.call(AMPLE, pow, 2, 2) == 4
+            lasting.call(SHORT, pow, 2, 2)
+    os.kill(lasting._pid, signal.SIGCONT)
 
 
 def test_a_call_is_answered_although_the_waiting_process_is_stopped(process, pipe):
@@ -270,16 +271,15 @@ def test_a_waiting_process_that_is_killed_is_an_error_that_stays(process):
         assert not caught.value.is_temporary
 
 
-def test_without_descriptors_a_call_is_an_error_that_passes(process):
+def test_without_descriptors_a_call_is_an_error_that_passes(lasting):
     limits = resource.getrlimit(resource.RLIMIT_NOFILE)
     resource.setrlimit(resource.RLIMIT_NOFILE, (0, limits[1]))
     try:
         with pytest.raises(ProcessEndedError, match=r'cannot be started.*open files') as caught:
-            process.call(AMPLE, pow, 2, 2)
+            lasting.call(AMPLE, pow, 2, 2)
     finally:
         resource.setrlimit(resource.RLIMIT_NOFILE, limits)
     assert caught.value.is_temporary
-    assert process.call(AMPLE, pow, 2, 2) == 4
 
 
 def test_if_no_process_can_be_forked_a_call_is_an_error_that_passes():

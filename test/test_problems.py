@@ -15,15 +15,18 @@ from sdf_pose_bridge.problems import (
 PLACE = Place('a.sdf', 7, '/sdf')
 
 
-def test_load_without_errors_raises_nothing():
-    problems = Problems(['a.sdf'])
+@pytest.fixture
+def problems():
+    return Problems(['a.sdf'])
+
+
+def test_load_without_errors_raises_nothing(problems):
     problems.warning('z', PLACE)
     problems.raise_errors()
     assert [warning.message for warning in problems.warnings] == ['z']
 
 
-def test_load_with_errors_raises_them_with_the_warnings():
-    problems = Problems(['a.sdf'])
+def test_load_with_errors_raises_them_with_the_warnings(problems):
     problems.warning('z', PLACE, 'CODE')
     problems.error(ParsingError('x', PLACE))
     with pytest.raises(LoadError) as caught:
@@ -42,8 +45,7 @@ def test_problems_are_ordered_by_file_and_line():
         'b.sdf', 'b.sdf:9', 'a.sdf:1', 'a.sdf:2', 'other']
 
 
-def test_problems_of_one_line_keep_their_order():
-    problems = Problems(['a.sdf'])
+def test_problems_of_one_line_keep_their_order(problems):
     problems.extend([ParsingError(message, PLACE) for message in 'zyx'])
     assert [error.message for error in problems.errors] == ['z', 'y', 'x']
 
@@ -63,8 +65,7 @@ def test_problems_of_different_elements_of_the_first_file_are_all_listed():
     assert len(problems.errors) == 2
 
 
-def test_many_errors_end_with_the_number_of_those_not_kept():
-    problems = Problems(['a.sdf'])
+def test_many_errors_end_with_the_number_of_those_not_kept(problems):
     for line in range(MOST_PROBLEMS + 7):
         problems.error(ParsingError('x', Place('a.sdf', line)))
         problems.warning('z', Place('a.sdf', line))
@@ -73,8 +74,7 @@ def test_many_errors_end_with_the_number_of_those_not_kept():
     assert problems.warnings[-1].message == 'and 7 more warnings'
 
 
-def test_problems_of_a_part_are_counted_in_the_whole():
-    problems = Problems(['a.sdf'])
+def test_problems_of_a_part_are_counted_in_the_whole(problems):
     problems.error(ParsingError('first', PLACE))
     part = Problems(['a.sdf'])
     for line in range(MOST_PROBLEMS + 7):
@@ -84,8 +84,7 @@ def test_problems_of_a_part_are_counted_in_the_whole():
     assert problems.errors[-1].message == 'and 8 more errors'
 
 
-def test_number_of_hints_is_limited():
-    problems = Problems(['a.sdf'])
+def test_number_of_hints_is_limited(problems):
     part = Problems(['a.sdf'], hints=problems.hints)
     assert sum(part.allows_hint() for _ in range(MOST_HINTS + 5)) == MOST_HINTS
     assert not problems.allows_hint()
@@ -101,9 +100,8 @@ def test_first_error_of_an_included_file_names_the_includes_that_led_there():
         'x', 'x', 'x (included from b.sdf:7, included from a.sdf:3)', 'x']
 
 
-def test_error_and_warning_shorten_what_they_quote():
+def test_error_and_warning_shorten_what_they_quote(problems):
     message = f'relative_to="{"x" * 10**6}" names no frame in model "m"'
-    problems = Problems(['a.sdf'])
     problems.error(ParsingError(message, PLACE))
     problems.warning(message, PLACE)
     for problem in (*problems.errors, *problems.warnings):

@@ -16,8 +16,7 @@ import numpy as np
 import pytest
 from sdf_texts import warning_codes
 
-import sdf_pose_bridge
-from sdf_pose_bridge import Kind, SdfError
+from sdf_pose_bridge import Kind, load, SdfError
 
 FOLDER = Path(__file__).parent / 'semantics'
 CASES = {
@@ -27,8 +26,8 @@ VALID = [name for name, expected in CASES.items() if expected['error'] is None]
 INVALID = [name for name, expected in CASES.items() if expected['error'] is not None]
 
 
-def load(name):
-    return sdf_pose_bridge.load(FOLDER / f'{name}.sdf', resource_paths=[FOLDER / 'models'])
+def scene_of(name):
+    return load(FOLDER / f'{name}.sdf', resource_paths=[FOLDER / 'models'])
 
 
 def matrix_from_steps(steps):
@@ -42,14 +41,14 @@ def matrix_from_steps(steps):
 
 @pytest.mark.parametrize('name', VALID)
 def test_poses(name):
-    scene = load(name)
+    scene = scene_of(name)
     for element, steps in CASES[name]['poses'].items():
         assert_same_pose(scene.pose(element), matrix_from_steps(steps), name=element)
 
 
 @pytest.mark.parametrize('name', VALID)
 def test_nothing_is_missing_or_made_up(name):
-    scene = load(name)
+    scene = scene_of(name)
     names = [
         element for element, kind in zip(scene.names, scene.kinds, strict=True)
         if kind not in {Kind.ROOT, Kind.WORLD, Kind.INERTIAL}]
@@ -59,7 +58,7 @@ def test_nothing_is_missing_or_made_up(name):
 @pytest.mark.parametrize('name', INVALID)
 def test_the_first_error(name):
     with pytest.raises(SdfError) as caught:
-        load(name)
+        scene_of(name)
     assert caught.value.code == CASES[name]['error']
     assert caught.value.file.endswith(f'{name}.sdf')
 
@@ -71,4 +70,4 @@ def test_the_first_error(name):
     ('12_merged_into_a_model', []), ('17_flat_names', []), ('15_frame_attribute', []),
 ])
 def test_warnings(name, codes):
-    assert warning_codes(load(name)) == codes
+    assert warning_codes(scene_of(name)) == codes

@@ -2,12 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Make TF trees of short SDF texts, and check that they are trees."""
 
-from matrices import matrix_from_pose
+from matrices import assert_close, matrix_from_pose
 import numpy as np
 import pytest
 
-import sdf_pose_bridge
-from sdf_pose_bridge import SdfError
+from sdf_pose_bridge import load_text, SdfError
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 
@@ -16,7 +15,7 @@ def model(name, children, pose=''):
 
 
 def tree_of(text, **options):
-    tree = tf_tree_from_scene(sdf_pose_bridge.load_text(text), TfOptions(**options))
+    tree = tf_tree_from_scene(load_text(text), TfOptions(**options))
     assert_is_tree(tree)
     return tree
 
@@ -32,7 +31,7 @@ def pose_of(tree, frame_id):
 
 def tree_errors_of(text, **options):
     with pytest.raises(SdfError) as caught:
-        tf_tree_from_scene(sdf_pose_bridge.load_text(text, 'file.sdf'), TfOptions(**options))
+        tf_tree_from_scene(load_text(text, 'file.sdf'), TfOptions(**options))
     return caught.value.errors
 
 
@@ -45,29 +44,22 @@ def only_tree_error(text, **options):
 def assert_is_tree(tree):
     """Check that TF accepts the frames, and that composing the transforms gives their poses."""
     ids = tree.frame_ids
-    indices = {frame_id: index for index, frame_id in enumerate(ids)}
-    assert len(indices) == len(ids) == len(tree.parent_ids) == len(tree.poses)
-    assert tree.root_frame not in indices
+    assert len({*ids, tree.root_frame}) - 1 == len(ids) == len(tree.poses)
     assert all(frame_id and not frame_id.startswith('/') for frame_id in ids)
     assert set(tree.parent_ids) <= {*ids, tree.root_frame, ''}
     assert np.isfinite(tree.transforms).all()
-    np.testing.assert_allclose(
-        np.linalg.norm(tree.transforms[:, 3:], axis=1), 1.0, rtol=0.0, atol=1e-12)
+    assert_close(np.linalg.norm(tree.transforms[:, 3:], axis=1), 1.0, 1e-12)
     assert (tree.transforms[:, 6] >= 0.0).all()
-    poses = [matrix_from_pose(pose) for pose in tree.poses.tolist()]
-    transforms = [matrix_from_pose(pose) for pose in tree.transforms.tolist()]
-    for index in range(len(ids)):
-        matrix = np.eye(4)
-        last = index
-        for _ in ids:
-            matrix = transforms[last] @ matrix
-            parent = tree.parent_ids[last]
-            if parent not in indices:
-                break
-            last = indices[parent]
+    above = dict(zip(ids, tree.parent_ids, strict=True))
+    matrices = dict(zip(ids, map(matrix_from_pose, tree.poses.tolist()), strict=True))
+    matrices[tree.root_frame] = np.eye(4)
+    for frame_id, transform in zip(ids, tree.transforms.tolist(), strict=True):
+        if above[frame_id]:
+            parent = matrices[above[frame_id]]
+            assert_close(parent @ matrix_from_pose(transform), matrices[frame_id])
         else:
-            pytest.fail(f'"{ids[index]}" is its own ancestor')
-        start = poses[last] if parent == '' else np.eye(4)
-        if parent == '':
-            np.testing.assert_array_equal(transforms[last], np.eye(4))
-        np.testing.assert_allclose(start @ matrix, poses[index], rtol=0.0, atol=1e-9)
+            np.testing.assert_array_equal(matrix_from_pose(transform), np.eye(4))
+        last = frame_id
+        for _ in ids:
+            last = above.get(last, '')
+        assert last not in above, f'"{frame_id}" is its own ancestor'

@@ -144,20 +144,16 @@ def test_the_formats_and_their_lengths():
 def test_one_pose_in_all_formats(name):
     # 90 degrees of yaw, then 30 degrees of roll on the child's own x: by hand.
     half, root = 0.5, math.sqrt(0.75)
-    angle = 2.0 * math.acos(math.sqrt(half) * math.cos(math.pi / 12))
-    factor = angle * math.sqrt(half) / math.sin(angle / 2.0)
+    sine, cosine = (
+        math.sqrt(half) * function(math.pi / 12) for function in (math.sin, math.cos))
+    angle = 2.0 * math.acos(cosine)
+    vector = angle / math.sin(angle / 2.0) * np.array((sine, sine, cosine))
     same = {
         'sdf_rpy': (1, 2, 3, math.pi / 6, 0, math.pi / 2),
         'sdf_rpy_degrees': (1, 2, 3, 30, 0, 90),
-        'sdf_quat_xyzw': (
-            1, 2, 3,
-            math.sqrt(half) * math.sin(math.pi / 12), math.sqrt(half) * math.sin(math.pi / 12),
-            math.sqrt(half) * math.cos(math.pi / 12), math.sqrt(half) * math.cos(math.pi / 12),
-        ),
-        'ur_pose': (
-            1, 2, 3, factor * math.sin(math.pi / 12), factor * math.sin(math.pi / 12),
-            factor * math.cos(math.pi / 12),
-        ),
+        'sdf_quat_xyzw': (1, 2, 3, sine, sine, cosine, cosine),
+        'mujoco': (1, 2, 3, cosine, sine, sine, cosine),
+        'ur_pose': (1, 2, 3, *vector),
         'matrix_row_major': (
             0, -root, half, 1,
             1, 0, 0, 2,
@@ -171,7 +167,6 @@ def test_one_pose_in_all_formats(name):
             1, 2, 3, 1,
         ),
     }
-    same['mujoco'] = [*same['sdf_quat_xyzw'][:3], *np.roll(same['sdf_quat_xyzw'][3:], 1)]
     same['kinova_gen3'] = same['sdf_rpy_degrees']
     same['kinova_jaco'] = (1, 2, 3, 0, 30, 90)
     for each, angles in (
@@ -185,24 +180,6 @@ def test_one_pose_in_all_formats(name):
     for target, expected in same.items():
         answer = converted_poses(same[name], name, target)
         assert answer == pytest.approx(expected, abs=3e-14), target
-
-
-def test_measured_rotations_come_back_as_x_y_z_and_not_as_z_y_x():
-    # The robot's documentation has x and z exchanged in its formula.
-    measured = (100.0, 200.0, 300.0, 10.0, 20.0, 30.0)
-    quat = converted_poses(measured, 'franka_measured', 'sdf_quat_xyzw')
-    assert quat[3:] == pytest.approx(quaternion_from_rpy(np.radians((10, 20, 30)).tolist()))
-    again = converted_poses(quat, 'sdf_quat_xyzw', 'franka_measured')
-    assert again == pytest.approx(measured, abs=1e-12)
-
-
-@matrix_formats
-def test_half_turns_in_matrices_keep_their_axes(name):
-    # The formula of the robot's documentation loses the signs of half turns.
-    about_x_minus_y = (0, -1, 0, 0, -1, 0, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1)
-    quat = converted_poses(about_x_minus_y, name, 'sdf_quat_xyzw')
-    half = math.sqrt(0.5)
-    assert quat == pytest.approx((0, 0, 0, half, -half, 0, 0), abs=2e-16)
 
 
 def test_libfranka_accepts_the_matrices():

@@ -10,7 +10,8 @@ from sdf_texts import model_file, posed, world_file
 from sdf_pose_bridge import load_text, UnknownFrameError
 from sdf_pose_bridge.scene.comparison import differences_of_scenes
 
-A, B = posed('link', 'a', '1 0 0 0 0 0'), posed('frame', 'b', '0 0 1 0 0 0', 'a')
+A = '<link name="a"><pose>1 0 0 0 0 0</pose></link>'
+B = '<frame name="b"><pose relative_to="a">0 0 1 0 0 0</pose></frame>'
 
 
 def differences(old, new, **options):
@@ -68,7 +69,7 @@ def test_of_two_in_one_place_none_is_renamed_for_certain():
 
 
 def test_worlds_are_told_apart():
-    text = world_file(posed('frame', 'f', '0 0 1 0 0 0'))
+    text = world_file('<frame name="f"><pose>0 0 1 0 0 0</pose></frame>')
     scenes = load_text(text), load_text(text.replace('"w"', '"v"'))
     assert [each.change.value for each in differences_of_scenes(*scenes)] == [
         'removed', 'added']

@@ -18,7 +18,7 @@ from sdf_texts import (
 from sdf_pose_bridge import Kind, load_text
 
 A = '<link name="a"/>'
-B = posed('link', 'b', '1 0 0 0 0 1.5707963267948966')
+B = '<link name="b"><pose>1 0 0 0 0 1.5707963267948966</pose></link>'
 NESTED = '<model name="n"><pose>0 0 1 0 0 0</pose><link name="k"/></model>'
 
 
@@ -28,60 +28,79 @@ def name_at(scene, indices, name):
     return None if index < 0 else scene.names[index]
 
 
+def with_canonical_link(content):
+    """Return a model file whose canonical link is ``f``."""
+    return model_file(content, attributes='canonical_link="f"')
+
+
+def with_a(content):
+    """Return a model file with the link ``a`` and more."""
+    return model_file(A + content)
+
+
 REFUSED = {
-    'POSE_RELATIVE_TO_INVALID': [
-        model_file(A + '<model name="n" placement_frame="a"><link name="k"/></model>'),
-    ],
-    'FRAME_ATTACHED_TO_INVALID': [
-        model_file(A + '<frame name="f" attached_to="zzz"/>'),
-        model_file(A + '<frame name="f" attached_to="zzz"><pose relative_to="a"/></frame>'),
-        model_file(A + '<frame name="f" attached_to="m"/>'),
-        world_file('<frame name="f" attached_to="zzz"/>'),
-    ],
-    'POSE_RELATIVE_TO_CYCLE': [
-        model_file(A + posed('frame', 'f', '', 'f')),
-        model_file(A + posed('frame', 'f', '', 'g') + posed('frame', 'g', '', 'f')),
-        model_file(A + posed('link', 'b', '', 'j') + fixed_joint('j', 'a', 'b')),
-        *(model_file(f'{A}<model name="n"><pose relative_to="{name}"/><link name="k"/></model>')
-          for name in ('n', 'n::k', 'n::__model__')),
-        world_file('<model name="n"><pose relative_to="f"/><link name="k"/></model>'
-                   + posed('frame', 'f', '', 'n::k')),
-        world_file('<frame name="f"><pose relative_to="f"/></frame>'),
-    ],
-    'FRAME_ATTACHED_TO_CYCLE': [
-        model_file(A + '<frame name="f" attached_to="f"/>'),
-        model_file(A + '<frame name="f" attached_to="f"><pose relative_to="a"/></frame>'),
-        model_file(A + '<frame name="f" attached_to="g"/><frame name="g" attached_to="f"/>'),
-        world_file('<frame name="f" attached_to="g"/><frame name="g" attached_to="f"/>'),
-        model_file(A + '<frame name="f"/>', attributes='canonical_link="f"'),
-        model_file(A, attributes='canonical_link="__model__"'),
-        model_file(A + '<frame name="f" attached_to="j"/>' + fixed_joint('j', 'a', 'f')),
-        model_file(A + fixed_joint('j', 'a', 'j')),
-    ],
-    'MODEL_WITHOUT_LINK': [
-        model_file(''), model_file('<frame name="f"/>'), model_file('<static>false</static>'),
-        model_file(A + '<model name="n"/>'), world_file('<model name="m"/>'),
-        model_file('', attributes='canonical_link="zzz"'),
-        model_file('<frame name="f"/>', attributes='canonical_link="f"'),
-    ],
+    'POSE_RELATIVE_TO_INVALID': {
+        with_a: ['<model name="n" placement_frame="a"><link name="k"/></model>'],
+    },
+    'FRAME_ATTACHED_TO_INVALID': {
+        with_a: [
+            '<frame name="f" attached_to="zzz"/>', '<frame name="f" attached_to="m"/>',
+            '<frame name="f" attached_to="zzz"><pose relative_to="a"/></frame>'],
+        world_file: ['<frame name="f" attached_to="zzz"/>'],
+    },
+    'POSE_RELATIVE_TO_CYCLE': {
+        with_a: [
+            '<frame name="f"><pose relative_to="f"/></frame>',
+            posed('frame', 'f', '', 'g') + posed('frame', 'g', '', 'f'),
+            posed('link', 'b', '', 'j') + fixed_joint('j', 'a', 'b'),
+            *(f'<model name="n"><pose relative_to="{name}"/><link name="k"/></model>'
+              for name in ('n', 'n::k', 'n::__model__'))],
+        world_file: [
+            '<model name="n"><pose relative_to="f"/><link name="k"/></model>'
+            + posed('frame', 'f', '', 'n::k'), '<frame name="f"><pose relative_to="f"/></frame>'],
+    },
+    'FRAME_ATTACHED_TO_CYCLE': {
+        with_a: [
+            '<frame name="f" attached_to="f"/>',
+            '<frame name="f" attached_to="f"><pose relative_to="a"/></frame>',
+            '<frame name="f" attached_to="g"/><frame name="g" attached_to="f"/>',
+            '<frame name="f" attached_to="j"/>' + fixed_joint('j', 'a', 'f'),
+            '<joint name="j" type="fixed"><parent>a</parent><child>j</child></joint>'],
+        world_file: ['<frame name="f" attached_to="g"/><frame name="g" attached_to="f"/>'],
+        with_canonical_link: [A + '<frame name="f"/>'],
+    },
+    'MODEL_WITHOUT_LINK': {
+        model_file: ['', '<frame name="f"/>', '<static>false</static>'],
+        with_a: ['<model name="n"/>'],
+        world_file: ['<model name="m"/>'],
+        with_canonical_link: ['', '<frame name="f"/>'],
+    },
 }
+"""Contents of files, by the code of the error."""
 
 
-@pytest.mark.parametrize(('code', 'text'), [
-    (code, text) for code, texts in REFUSED.items() for text in texts])
-def test_wrong_reference_is_refused_once(code, text):
-    assert codes_of(text) == [code]
+@pytest.mark.parametrize(('code', 'file_with', 'content'), [
+    (code, file_with, content) for code, files in REFUSED.items()
+    for file_with, contents in files.items() for content in contents])
+def test_wrong_reference_is_refused_once(code, file_with, content):
+    assert codes_of(file_with(content)) == [code]
+
+
+def test_model_frame_is_not_the_canonical_link():
+    assert codes_of(model_file(A, attributes='canonical_link="__model__"')) == [
+        'FRAME_ATTACHED_TO_CYCLE']
 
 
 # Unknown names
 
 @pytest.mark.parametrize('text', [
-    model_file(A + posed('link', 'b', '', 'zzz')),
-    model_file(A + posed('frame', 'f', '', 'zzz')),
-    model_file(A + '<model name="n"><pose relative_to="zzz"/><link name="k"/></model>'),
-    model_file(A + B + fixed_joint('j', 'a', 'b', '<pose relative_to="zzz"/>')),
+    *map(with_a, (
+        '<link name="b"><pose relative_to="zzz"/></link>',
+        '<frame name="f"><pose relative_to="zzz"/></frame>',
+        '<model name="n"><pose relative_to="zzz"/><link name="k"/></model>',
+        B + fixed_joint('j', 'a', 'b', '<pose relative_to="zzz"/>'))),
     world_file('<model name="m"><pose relative_to="zzz"/><link name="k"/></model>'),
-    world_file(posed('frame', 'f', '', 'zzz')),
+    world_file('<frame name="f"><pose relative_to="zzz"/></frame>'),
     model_file(A, attributes='placement_frame="zzz"'),
 ])
 def test_unknown_reference_of_a_pose_is_refused(text):
@@ -91,9 +110,12 @@ def test_unknown_reference_of_a_pose_is_refused(text):
 
 
 def test_unknown_name_gives_no_other_errors():
-    text = model_file(
-        A + '<frame name="f" attached_to="zzz"/><frame name="g" attached_to="f"/>'
-        + posed('link', 'b', '', 'f') + fixed_joint('j', 'a', 'g'))
+    text = model_file("""
+        <link name="a"/>
+        <frame name="f" attached_to="zzz"/>
+        <frame name="g" attached_to="f"/>
+        <link name="b"><pose relative_to="f"/></link>
+        <joint name="j" type="fixed"><parent>a</parent><child>g</child></joint>""")
     assert codes_of(text)[0] == 'FRAME_ATTACHED_TO_INVALID'
     assert 'POSE_RELATIVE_TO_INVALID' not in codes_of(text)
 
@@ -110,8 +132,15 @@ def test_child_of_a_link_with_an_unknown_reference_is_left_out(tag):
 
 
 @pytest.mark.parametrize('text', [
-    model_file(A + B + fixed_joint('j', 'a', 'b', posed('sensor', 's', '', 'zzz'))),
-    world_file(posed('light', 's', '', 'zzz')),
+    model_file("""
+        <link name="a"/>
+        <link name="b"><pose>1 0 0 0 0 1.5707963267948966</pose></link>
+        <joint name="j" type="fixed">
+          <parent>a</parent>
+          <child>b</child>
+          <sensor name="s" type="camera"><pose relative_to="zzz"/></sensor>
+        </joint>"""),
+    world_file('<light name="s" type="point"><pose relative_to="zzz"/></light>'),
 ])
 def test_sensor_or_light_elsewhere_with_an_unknown_reference_is_left_out(text):
     scene = load_text(text)
@@ -141,9 +170,13 @@ def test_cycle_is_reported_once_at_its_first_element():
 
 
 def test_every_cycle_is_reported():
-    frames = ''.join(
-        posed('frame', name, '', reference) for name, reference in
-        [('p', 'q'), ('q', 'p'), ('r', 'r'), ('s', 't'), ('t', 'u'), ('u', 's')])
+    frames = """
+        <frame name="p"><pose relative_to="q"/></frame>
+        <frame name="q"><pose relative_to="p"/></frame>
+        <frame name="r"><pose relative_to="r"/></frame>
+        <frame name="s"><pose relative_to="t"/></frame>
+        <frame name="t"><pose relative_to="u"/></frame>
+        <frame name="u"><pose relative_to="s"/></frame>"""
     assert codes_of(model_file(A + frames)) == ['POSE_RELATIVE_TO_CYCLE'] * 3
 
 
@@ -202,9 +235,13 @@ def test_canonical_link_can_be_in_a_static_model():
 
 @pytest.mark.parametrize('canonical', ['', 'b', 'f'])
 def test_canonical_link_moves_nothing(canonical):
-    scene = load_text(model_file(
-        '<pose>0 0 1 0 0 0</pose>' + A + B + '<frame name="f" attached_to="b"/>'
-        + posed('frame', 'g', '0 5 0 0 0 0'), attributes=f'canonical_link="{canonical}"'))
+    content = """
+        <pose>0 0 1 0 0 0</pose>
+        <link name="a"/>
+        <link name="b"><pose>1 0 0 0 0 1.5707963267948966</pose></link>
+        <frame name="f" attached_to="b"/>
+        <frame name="g"><pose>0 5 0 0 0 0</pose></frame>"""
+    scene = load_text(model_file(content, attributes=f'canonical_link="{canonical}"'))
     assert_at(scene, 'm', (0, 0, 1))
     assert_at(scene, 'm::g', (0, 5, 1))
 
@@ -228,12 +265,20 @@ def test_reference_of_an_inertial_is_the_link():
     ('on_fixed', 'world'),
 ])
 def test_body_of_a_frame(name, body):
-    scene = load_text(world_file(
-        '<model name="m">' + A + B + NESTED + fixed_joint('j', 'a', 'b')
-        + '<frame name="f"><pose relative_to="b"/></frame>'
-        '<frame name="on_j" attached_to="on_b"/><frame name="on_b" attached_to="j"/>'
-        '<frame name="on_n" attached_to="n"/><frame name="on_s" attached_to="s"/>'
-        '<model name="s"><static>1</static></model></model>'
-        '<frame name="on_m" attached_to="m"/><frame name="fixed"/>'
-        '<frame name="on_fixed" attached_to="fixed"><pose relative_to="m::a"/></frame>'))
+    scene = load_text(world_file("""
+        <model name="m">
+          <link name="a"/>
+          <link name="b"><pose>1 0 0 0 0 1.5707963267948966</pose></link>
+          <model name="n"><pose>0 0 1 0 0 0</pose><link name="k"/></model>
+          <joint name="j" type="fixed"><parent>a</parent><child>b</child></joint>
+          <frame name="f"><pose relative_to="b"/></frame>
+          <frame name="on_j" attached_to="on_b"/>
+          <frame name="on_b" attached_to="j"/>
+          <frame name="on_n" attached_to="n"/>
+          <frame name="on_s" attached_to="s"/>
+          <model name="s"><static>1</static></model>
+        </model>
+        <frame name="on_m" attached_to="m"/>
+        <frame name="fixed"/>
+        <frame name="on_fixed" attached_to="fixed"><pose relative_to="m::a"/></frame>"""))
     assert name_at(scene, scene.bodies, name) == body

@@ -13,7 +13,7 @@ from sdf_texts import (
     world_file,
 )
 
-import sdf_pose_bridge
+from sdf_pose_bridge import load_text
 
 FRAMES = ('<frame name="on_a" attached_to="a"/><frame name="also_on_a" attached_to="on_a"/>'
           '<model name="n"><link name="k"/></model>')
@@ -95,12 +95,12 @@ def test_unknown_model_frame_as_parent_is_an_unknown_attachment():
 @pytest.mark.parametrize('name', ['__model__', 'a', 'j', 'n::k', 'on_a', '', ' '])
 def test_axis_can_be_in_any_frame_of_the_scope(name):
     axis = f'<axis><xyz expressed_in="{name}">1 0 0</xyz></axis>'
-    sdf_pose_bridge.load_text(in_top_model(fixed_joint('j', 'a', 'b', axis)))
+    load_text(in_top_model(fixed_joint('j', 'a', 'b', axis)))
 
 
 def test_axis_moves_no_frame():
     axis = '<axis><xyz expressed_in="a">0 1 0</xyz></axis>'
-    scene = sdf_pose_bridge.load_text(in_top_model(fixed_joint('j', 'a', 'b', axis)))
+    scene = load_text(in_top_model(fixed_joint('j', 'a', 'b', axis)))
     assert scene.pose('m::j') == (0, 0, 0, 0, 0, 0, 1)
 
 
@@ -135,7 +135,7 @@ def test_axis_of_the_leader_is_checked_at_every_depth(file_with, joint, axis):
 def test_axis_can_mimic_another_one(file_with):
     leader = fixed_joint('j', 'a', 'b', '<axis><xyz>1 0 0</xyz></axis>')
     text = file_with(leader + following('j')).replace('version="1.9"', 'version="1.11"')
-    scene = sdf_pose_bridge.load_text(text.replace('version="1.10"', 'version="1.11"'))
+    scene = load_text(text.replace('version="1.10"', 'version="1.11"'))
     leading, follower = scene.joints
     assert follower.axes[0].mimic == (leading.element, 0, 1.0, 0.0, 0.0)
 
@@ -149,14 +149,14 @@ def test_leader_in_a_model_whose_name_holds_the_separator_is_not_found(model, is
         f'<link name="a"/><model name="{model}"><link name="k"/>{leader}</model>{follower}',
         version='1.6')
     if is_found:
-        assert sdf_pose_bridge.load_text(text).joints[-1].axes[0].mimic is not None
+        assert load_text(text).joints[-1].axes[0].mimic is not None
     else:
         assert codes_of(text) == ['JOINT_AXIS_MIMIC_INVALID']
 
 
 def ends_of_joints(text):
     """Return the names of the frames that each joint joins, without scopes: parent, child."""
-    scene = sdf_pose_bridge.load_text(text)
+    scene = load_text(text)
     return [tuple('world' if scene.parents[end] < 0 else scene.own_name(end)
                   for end in (joint.parent, joint.child)) for joint in scene.joints]
 
@@ -206,14 +206,14 @@ def test_frame_of_the_world_as_the_child_is_refused(parent, code):
      'JOINT_AXIS_MIMIC_INVALID'),
 ])
 def test_wrong_joint_of_a_model_in_a_model_gives_a_warning(joint, code):
-    scene = sdf_pose_bridge.load_text(in_nested_model(joint))
+    scene = load_text(in_nested_model(joint))
     (warning,) = scene.warnings
     assert warning.code == code
     assert warning.message.endswith('; libsdformat does not check this here')
 
 
 def test_joint_without_two_ends_is_left_out():
-    scene = sdf_pose_bridge.load_text(in_nested_model(fixed_joint('j', 'zzz', 'a')))
+    scene = load_text(in_nested_model(fixed_joint('j', 'zzz', 'a')))
     assert not scene.joints
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from sdf_texts import errors_of, LINK, model_file
 
-import sdf_pose_bridge
+from sdf_pose_bridge import load, load_text
 from sdf_pose_bridge.errors import LoadError
 
 WRONG_FILE = """<?xml version="1.0"?>
@@ -84,14 +84,14 @@ def test_error_has_the_path_as_it_was_opened(tmp_path, monkeypatch):
     (tmp_path / 'bad.sdf').write_text('<sdf version="1.9"><model name="m"/></sdf>')
     monkeypatch.chdir(tmp_path)
     with pytest.raises(LoadError) as caught:
-        sdf_pose_bridge.load('bad.sdf')
+        load('bad.sdf')
     assert caught.value.file == 'bad.sdf'
 
 
 @pytest.mark.parametrize('as_path', [str, Path])
 def test_path_can_be_a_string_or_a_path(tmp_path, as_path):
     (tmp_path / 'größe 1.sdf').write_text(model_file('<link name="l"/>'))
-    scene = sdf_pose_bridge.load(as_path(tmp_path / 'größe 1.sdf'))
+    scene = load(as_path(tmp_path / 'größe 1.sdf'))
     assert scene.path == str(tmp_path / 'größe 1.sdf')
 
 
@@ -101,7 +101,7 @@ def test_garbage_collection_is_as_before(is_enabled):
     try:
         (gc.enable if is_enabled else gc.disable)()
         errors_of(WRONG_FILE)
-        sdf_pose_bridge.load_text(model_file('<link name="l"/>'))
+        load_text(model_file('<link name="l"/>'))
         assert gc.isenabled() == is_enabled
     finally:
         (gc.enable if was_enabled else gc.disable)()
@@ -109,9 +109,9 @@ def test_garbage_collection_is_as_before(is_enabled):
 
 def test_unknown_choice_for_missing_includes_is_refused():
     with pytest.raises(ValueError, match='ignore'):
-        sdf_pose_bridge.load_text(model_file('<link name="l"/>'), on_missing_include='ignore')
+        load_text(model_file('<link name="l"/>'), on_missing_include='ignore')
 
 
 def test_resource_path_that_is_not_a_directory_is_a_warning():
-    (warning,) = sdf_pose_bridge.load_text(model_file(LINK), resource_paths=['nowhere']).warnings
+    (warning,) = load_text(model_file(LINK), resource_paths=['nowhere']).warnings
     assert warning.message == 'resource_paths names "nowhere", which is not a directory'

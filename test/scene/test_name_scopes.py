@@ -6,21 +6,25 @@ import pytest
 from sdf_texts import (
     element,
     errors_of,
-    fixed_joint,
     model_file,
     only_error,
     posed,
     world_file,
 )
 
-import sdf_pose_bridge
+from sdf_pose_bridge import load_text
 
-MODELS = (
-    posed('link', 'l', '1 0 0 0 0 0')
-    + '<model name="n"><pose>0 1 0 0 0 0</pose>'
-    + posed('link', 'k', '0 1 0 0 0 0') + posed('frame', 'f', '0 2 0 0 0 0')
-    + '<model name="n2"><pose>0 0 1 0 0 0</pose>' + posed('link', 'deep', '0 0 1 0 0 0')
-    + '{inner}</model></model>{outer}')
+MODELS = """
+    <link name="l"><pose>1 0 0 0 0 0</pose></link>
+    <model name="n"><pose>0 1 0 0 0 0</pose>
+      <link name="k"><pose>0 1 0 0 0 0</pose></link>
+      <frame name="f"><pose>0 2 0 0 0 0</pose></frame>
+      <model name="n2"><pose>0 0 1 0 0 0</pose>
+        <link name="deep"><pose>0 0 1 0 0 0</pose></link>
+        {inner}
+      </model>
+    </model>
+    {outer}"""
 
 
 def in_model(reference):
@@ -38,7 +42,7 @@ def in_world(reference):
     """Return a file with a reference in the world around the models."""
     model = '<model name="m"><pose>0 0 5 0 0 0</pose>' + MODELS.format(inner='', outer='')
     return world_file(
-        model + '</model>' + posed('frame', 'r', '7 0 0 0 0 0')
+        model + '</model>' + '<frame name="r"><pose>7 0 0 0 0 0</pose></frame>'
         + '<light name="sun" type="point"/><actor name="man"/>'
         + posed('frame', 'probe', '', reference))
 
@@ -49,7 +53,7 @@ def in_world(reference):
     ('n::n2::deep', (0, 1, 2)), ('n::n2::__model__', (0, 1, 1)), (' n::k ', (0, 2, 0)),
 ])
 def test_reference_in_a_model(reference, position):
-    scene = sdf_pose_bridge.load_text(in_model(reference))
+    scene = load_text(in_model(reference))
     assert scene.pose('m::probe')[:3] == position
 
 
@@ -82,21 +86,28 @@ def test_reference_to_what_is_not_in_the_scope_is_refused(text):
     ('m::l', (1, 0, 5)), ('m::n::n2::deep', (0, 1, 7)), ('m::n::__model__', (0, 1, 5)),
 ])
 def test_reference_in_a_world(reference, position):
-    assert sdf_pose_bridge.load_text(in_world(reference)).pose('probe')[:3] == position
+    assert load_text(in_world(reference)).pose('probe')[:3] == position
 
 
 def test_reference_to_a_joint():
-    scene = sdf_pose_bridge.load_text(model_file(
-        '<link name="a"/>' + posed('link', 'b', '1 0 0 0 0 0') + fixed_joint('j', 'a', 'b')
-        + posed('frame', 'f', '1 0 0 0 0 0', 'j')))
+    scene = load_text(model_file("""
+        <link name="a"/>
+        <link name="b"><pose>1 0 0 0 0 0</pose></link>
+        <joint name="j" type="fixed"><parent>a</parent><child>b</child></joint>
+        <frame name="f"><pose relative_to="j">1 0 0 0 0 0</pose></frame>"""))
     assert scene.pose('m::f')[:3] == (2, 0, 0)
 
 
 def test_reference_names_a_frame_of_its_own_world():
-    text = ('<sdf version="1.10"><world name="a">' + posed('frame', 'f', '1 0 0 0 0 0')
-            + '</world><world name="b">' + posed('frame', 'f', '2 0 0 0 0 0')
-            + posed('frame', 'g', '', 'f') + '</world></sdf>')
-    assert sdf_pose_bridge.load_text(text).pose('g')[:3] == (2, 0, 0)
+    text = """
+        <sdf version="1.10">
+          <world name="a"><frame name="f"><pose>1 0 0 0 0 0</pose></frame></world>
+          <world name="b">
+            <frame name="f"><pose>2 0 0 0 0 0</pose></frame>
+            <frame name="g"><pose relative_to="f"/></frame>
+          </world>
+        </sdf>"""
+    assert load_text(text).pose('g')[:3] == (2, 0, 0)
 
 
 @pytest.mark.parametrize('content', ['{link}{model}', '{model}{link}'])
@@ -110,7 +121,7 @@ def test_a_name_with_a_separator_cannot_be_that_of_another_element(content):
 # Hints in messages
 
 @pytest.mark.parametrize(('text', 'words'), [
-    (model_file('<link name="shoulder"/>' + posed('frame', 'f', '', 'sholder')),
+    (model_file('<link name="shoulder"/><frame name="f"><pose relative_to="shoulder1"/></frame>'),
      ['did you mean "shoulder"?']),
     (in_model('n::n2::dep'), ['did you mean "n::n2::deep"?']),
     (model_file('<model name="n"><link name="l"/></model><frame name="n_l"/>'

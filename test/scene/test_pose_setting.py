@@ -3,7 +3,7 @@
 """What a file must say so that an element is at a pose."""
 
 from lxml import etree
-import numpy as np
+from matrices import assert_close
 import pytest
 from sdf_texts import fixed_joint, model_file, posed, world_file, write_files
 import urdf_texts
@@ -46,9 +46,8 @@ def make_change(tmp_path):
     return change
 
 
-def assert_at(pose, expected):
-    between = canonical_relative_pose(pose, expected)
-    np.testing.assert_allclose(between[:6], 0.0, atol=1e-9)
+def assert_at(pose, expected, tolerance=1e-9):
+    assert_close(canonical_relative_pose(pose, expected)[:6], 0.0, tolerance)
 
 
 @pytest.mark.parametrize(('text', 'name', 'relative_to'), [
@@ -59,16 +58,16 @@ def assert_at(pose, expected):
     # The frame that the pose is relative to is turned.
     (MODEL.replace('1 0 0 0 0 0', '1 0 0 0.2 0 1'), 'm::f', ''),
     # Digits that are enough near the placement frame are too few at the model frame.
-    (model_file('<pose>1 2 3 0 1 0</pose>' + posed('link', 'a', '0 0 300 0 0 2'),
+    (model_file('<pose>1 2 3 0 1 0</pose><link name="a"><pose>0 0 300 0 0 2</pose></link>',
                 attributes='placement_frame="a"'), 'm', ''),
     (model_file('<link name="a"/><link name="b"/>' + fixed_joint('j', 'a', 'b')), 'm::j', 'm::a'),
     (model_file('<link name="a"><sensor name="s" type="camera"/></link>'), 'm::a::s', 'm'),
     # The pose of the model is that of its placement frame.
-    (model_file('<pose>1 2 3 0 1 0</pose>' + posed('link', 'a', '0 0 1 0 0 2'),
+    (model_file('<pose>1 2 3 0 1 0</pose><link name="a"><pose>0 0 1 0 0 2</pose></link>',
                 attributes='placement_frame="a"'), 'm', ''),
-    (model_file('<pose>1 2 3 0 1 0</pose>' + posed('link', 'a', '0 0 1 0 0 2'),
+    (model_file('<pose>1 2 3 0 1 0</pose><link name="a"><pose>0 0 1 0 0 2</pose></link>',
                 attributes='placement_frame="a"'), 'm::a', 'm'),
-    (model_file('<pose>1 2 3 0 1 0</pose>' + posed('link', 'a', '0 0 1 0 0 2'),
+    (model_file('<pose>1 2 3 0 1 0</pose><link name="a"><pose>0 0 1 0 0 2</pose></link>',
                 attributes='placement_frame="a"'), 'm::a', ''),
     (MODEL.replace('1.9', '1.4').replace('relative_to="a"', ''), 'm::a', ''),
 ])
@@ -199,8 +198,7 @@ def test_the_origin_that_urdf_needs_is_named(
     xml = robot.find(f'joint[@name="{joint}"]')
     xml.insert(0, etree.fromstring(caught.value.message.partition('": ')[2]))
     path.write_bytes(etree.tostring(robot))
-    between = canonical_relative_pose(load(path).pose(*names), ASKED)
-    np.testing.assert_allclose(between[:6], 0.0, atol=3e-6)
+    assert_at(load(path).pose(*names), ASKED, 3e-6)
 
 
 def test_a_joint_that_moves_stays_where_an_optical_frame_is_measured(change, tmp_path):

@@ -4,11 +4,11 @@
 
 from dataclasses import fields
 
+from matrices import assert_close
 import numpy as np
 import pytest
 from sdf_texts import (
     assert_at,
-    fixed_joint,
     joint,
     model_file,
     only_error,
@@ -35,14 +35,14 @@ def test_quaternions_have_unit_length_at_the_end_of_long_chains():
         for i in range(2000))
     scene = load_text(model_file('<link name="l"/>' + frames))
     norms = np.linalg.norm(scene.poses[:, 3:], axis=1)
-    np.testing.assert_allclose(norms, 1.0, rtol=0.0, atol=1e-15)
+    assert_close(norms, 1.0, 1e-15)
     assert (scene.poses[:, 6] >= 0.0).all()
 
 
 def test_poses_have_no_negative_zeros():
-    scene = load_text(model_file(
-        posed('link', 'a', '-0 -0 -0 0 0 3.141592653589793')
-        + posed('link', 'b', '-0 0 0 0 0 3.141592653589793', 'a')))
+    scene = load_text(model_file("""
+        <link name="a"><pose>-0 -0 -0 0 0 3.141592653589793</pose></link>
+        <link name="b"><pose relative_to="a">-0 0 0 0 0 3.141592653589793</pose></link>"""))
     assert not (np.signbit(scene.poses) & (scene.poses == 0.0)).any()
 
 
@@ -52,7 +52,7 @@ def test_poses_have_no_negative_zeros():
      'frame[@name="b"]/pose'),
     (posed('frame', 'a', '9e307 0 0 0 0 0') + posed('frame', 'b', '1.7e308 0 0 0 0 0', 'a'),
      'frame[@name="a"]/pose'),
-    (posed('model', 'n', '0 0 -1e301 0 0 0').replace('</model>', '<link name="k"/></model>'),
+    ('<model name="n"><pose>0 0 -1e301 0 0 0</pose><link name="k"/></model>',
      'model[@name="n"]/pose'),
 ])
 def test_poses_that_add_up_to_more_than_numbers_hold_are_errors(content, tag):
@@ -99,12 +99,19 @@ def test_elements_that_are_left_out_change_nothing_else():
 
 # Placement frames
 
-PLACED = (
-    '<pose>1 2 3 0 0 1.5707963267948966</pose>' + posed('link', 'l', '1 0 0 0 0 0')
-    + posed('link', 'k', '0 0 4 0 0 0') + fixed_joint('j', 'l', 'k', '<pose>1 1 1 0 0 0</pose>')
-    + '<frame name="f" attached_to="l"><pose>0 1 0 0 0 0</pose></frame>'
-    '<model name="n"><pose>0 0 1 0 0 0</pose><link name="b"><pose>0 1 0 0 0 0</pose></link>'
-    '</model>')
+PLACED = """
+    <pose>1 2 3 0 0 1.5707963267948966</pose>
+    <link name="l"><pose>1 0 0 0 0 0</pose></link>
+    <link name="k"><pose>0 0 4 0 0 0</pose></link>
+    <joint name="j" type="fixed">
+      <parent>l</parent>
+      <child>k</child>
+      <pose>1 1 1 0 0 0</pose>
+    </joint>
+    <frame name="f" attached_to="l"><pose>0 1 0 0 0 0</pose></frame>
+    <model name="n"><pose>0 0 1 0 0 0</pose>
+      <link name="b"><pose>0 1 0 0 0 0</pose></link>
+    </model>"""
 
 
 @pytest.mark.parametrize('frame', ['l', 'k', 'j', 'f', 'n', 'n::b', 'n::__model__'])
@@ -128,9 +135,12 @@ def test_placement_frame_of_a_static_model():
 
 
 def test_placement_frame_in_a_model_with_a_placement_frame():
-    inner = ('<model name="i" placement_frame="f"><pose>0 1 0 0 0 1</pose><link name="l"/>'
-             + posed('frame', 'g', '1 0 0 0 0 0.5') + posed('frame', 'f', '0 2 0 0 0 0', 'g')
-             + '</model>')
+    inner = """
+        <model name="i" placement_frame="f"><pose>0 1 0 0 0 1</pose>
+          <link name="l"/>
+          <frame name="g"><pose>1 0 0 0 0 0.5</pose></frame>
+          <frame name="f"><pose relative_to="g">0 2 0 0 0 0</pose></frame>
+        </model>"""
     scene = load_text(model_file(
         '<pose>3 4 0 0 0 2</pose><link name="l"/>' + inner, attributes='placement_frame="i::f"'))
     assert_at(scene, 'm::i::f', (3, 4, 0))

@@ -7,34 +7,57 @@ import copy
 from matrices import assert_same_pose, matrix_from_rpy
 import numpy as np
 import pytest
-from sdf_texts import element, fixed_joint, model_file, posed, world_file
+from sdf_texts import model_file, world_file
 
-import sdf_pose_bridge
-from sdf_pose_bridge import SdfError, UnknownFrameError
+from sdf_pose_bridge import load_text, SdfError, UnknownFrameError
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
 TABLE = ('<model name="{}"><pose>1 2 0 0 0 {}</pose><link name="top"><pose>0 0 1 0 0 0</pose>'
          '</link></model>')
-TWO_WORLDS = (
-    '<sdf version="1.10"><world name="day">' + TABLE.format('table', 0)
-    + posed('frame', 'noon', '0 0 9 0 0 0') + '</world><world name="night">'
-    + TABLE.format('table', 0).replace('1 2 0', '5 5 0') + '</world></sdf>')
-WORLD_AND_MODEL = (
-    '<sdf version="1.10"><world name="w">' + TABLE.format('table', 0) + '</world>'
-    + TABLE.format('chair', 0) + '</sdf>')
+TWO_WORLDS = """
+    <sdf version="1.10">
+      <world name="day">
+        <model name="table"><pose>1 2 0 0 0 0</pose>
+          <link name="top"><pose>0 0 1 0 0 0</pose></link>
+        </model>
+        <frame name="noon"><pose>0 0 9 0 0 0</pose></frame>
+      </world>
+      <world name="night">
+        <model name="table"><pose>5 5 0 0 0 0</pose>
+          <link name="top"><pose>0 0 1 0 0 0</pose></link>
+        </model>
+      </world>
+    </sdf>"""
+WORLD_AND_MODEL = """
+    <sdf version="1.10">
+      <world name="w">
+        <model name="table"><pose>1 2 0 0 0 0</pose>
+          <link name="top"><pose>0 0 1 0 0 0</pose></link>
+        </model>
+      </world>
+      <model name="chair"><pose>1 2 0 0 0 0</pose>
+        <link name="top"><pose>0 0 1 0 0 0</pose></link>
+      </model>
+    </sdf>"""
 
 
 @pytest.fixture
 def scene():
-    return sdf_pose_bridge.load_text(world_file(
-        TABLE.format('table', 0.7) + TABLE.format('chair', -0.2)
-        + element('light', 'sun') + element('light', 'chair')))
+    return load_text(world_file("""
+        <model name="table"><pose>1 2 0 0 0 0.7</pose>
+          <link name="top"><pose>0 0 1 0 0 0</pose></link>
+        </model>
+        <model name="chair"><pose>1 2 0 0 0 -0.2</pose>
+          <link name="top"><pose>0 0 1 0 0 0</pose></link>
+        </model>
+        <light name="sun" type="point"/>
+        <light name="chair" type="point"/>"""))
 
 
 @pytest.fixture
 def worlds():
-    return sdf_pose_bridge.load_text(TWO_WORLDS)
+    return load_text(TWO_WORLDS)
 
 
 @pytest.mark.parametrize(('elements', 'names'), [
@@ -71,7 +94,7 @@ def test_name_of_no_world_or_of_several_is_refused(worlds, name, options, messag
 
 
 def test_model_may_be_left_out_in_a_model_file():
-    scene = sdf_pose_bridge.load_text(model_file('<link name="lift"/><link name="hand"/>'))
+    scene = load_text(model_file('<link name="lift"/><link name="hand"/>'))
     assert scene.index('lift') == scene.index('m/lift') == scene.index('m::lift')
     with pytest.raises(UnknownFrameError, match=r'"lft".*did you mean "lift"'):
         scene.pose('lft')
@@ -85,14 +108,14 @@ def test_unknown_name_is_a_lookup_error_and_an_error_of_the_package(scene):
 
 
 def test_pose_relative_to_another_world_is_refused():
-    text = TWO_WORLDS.replace('night"><model name="table"', 'night"><model name="bed"')
-    scene = sdf_pose_bridge.load_text(text)
+    text = TWO_WORLDS.replace('table"><pose>5 5', 'bed"><pose>5 5')
+    scene = load_text(text)
     with pytest.raises(UnknownFrameError):
         scene.pose('noon', 'bed')
 
 
 def test_pose_relative_to_the_model_beside_a_world_is_refused():
-    scene = sdf_pose_bridge.load_text(WORLD_AND_MODEL)
+    scene = load_text(WORLD_AND_MODEL)
     with pytest.raises(UnknownFrameError):
         scene.pose('table', 'chair')
     with pytest.raises(UnknownFrameError):
@@ -100,7 +123,7 @@ def test_pose_relative_to_the_model_beside_a_world_is_refused():
 
 
 def test_name_of_two_children_of_a_link_is_refused():
-    scene = sdf_pose_bridge.load_text(model_file(
+    scene = load_text(model_file(
         '<link name="l"><visual name="x"/><collision name="x"/></link>'))
     with pytest.raises(UnknownFrameError, match=r'more than one.*visual.*collision'):
         scene.pose('m::l::x')
@@ -157,15 +180,20 @@ def test_scene_has_roots_and_names_of_worlds(worlds):
 
 
 def test_joint_has_its_ends():
-    scene = sdf_pose_bridge.load_text(world_file(
-        TABLE.format('table', 0) + fixed_joint('j', 'world', 'table::top')))
+    scene = load_text(world_file("""
+        <model name="table"><pose>1 2 0 0 0 0</pose>
+          <link name="top"><pose>0 0 1 0 0 0</pose></link>
+        </model>
+        <joint name="j" type="fixed"><parent>world</parent><child>table::top</child></joint>"""))
     assert [(scene.names[joint.parent], scene.names[joint.child]) for joint in scene.joints] == [
         ('world', 'table::top')]
 
 
 def test_pose_is_relative_to_its_reference():
-    scene = sdf_pose_bridge.load_text(model_file(
-        '<link name="a"/>' + posed('frame', 'f', '0 0 1 0 0 0', 'a') + element('frame', 'g')))
+    scene = load_text(model_file("""
+        <link name="a"/>
+        <frame name="f"><pose relative_to="a">0 0 1 0 0 0</pose></frame>
+        <frame name="g"/>"""))
     names = {name: scene.names[scene.references[index]] for index, name in enumerate(scene.names)
              if scene.references[index] >= 0}
     assert names == {'m': '__root__', 'm::a': 'm', 'm::f': 'm::a', 'm::g': 'm'}
@@ -183,7 +211,7 @@ def test_scene_has_its_files(scene):
 # Default references and ancestors
 
 def test_default_reference_depends_on_the_kind():
-    scene = sdf_pose_bridge.load_text(model_file(
+    scene = load_text(model_file(
         '<link name="a"><visual name="v"><geometry><empty/></geometry></visual></link>'
         '<link name="b"><pose relative_to="a"/></link><frame name="f" attached_to="a"/>'
         '<frame name="g"/>'
@@ -197,7 +225,7 @@ def test_default_reference_depends_on_the_kind():
 
 
 def test_default_reference_of_a_joint_that_is_only_warned_of():
-    scene = sdf_pose_bridge.load_text(model_file(
+    scene = load_text(model_file(
         '<link name="base"/><model name="n"><link name="a"/><frame name="f" attached_to="a"/>'
         '<joint name="j" type="fixed"><parent>a</parent><child>f</child></joint></model>'))
     assert [warning.code for warning in scene.warnings] == ['JOINT_PARENT_SAME_AS_CHILD']
@@ -223,7 +251,7 @@ def test_elements_around_an_element(scene):
 @pytest.mark.parametrize('sign', [1, -1])
 def test_half_turn_between_elements_has_the_canonical_sign(quat_xyzw, sign):
     written = ' '.join(str(sign * component) for component in quat_xyzw)
-    scene = sdf_pose_bridge.load_text(model_file(
+    scene = load_text(model_file(
         '<link name="a"/><frame name="f">'
         f'<pose rotation_format="quat_xyzw">0 0 0 {written}</pose></frame>'))
     lookup = PoseLookup(scene, tf_tree_from_scene(scene))

@@ -105,6 +105,14 @@ def left_beside(path):
     return [each for each in path.parent.iterdir() if each != path]
 
 
+def assert_refused(path, reason, content=OLD):
+    """Check that a file is not replaced for a reason, and stays as it is."""
+    with pytest.raises(FileWriteError, match=reason):
+        replace_file(str(path), OLD, NEW)
+    assert path.read_bytes() == content
+    assert not left_beside(path)
+
+
 def edited_meanwhile(monkeypatch, edit):
     """Run an edit after the new file is written, before the old one is replaced."""
     synchronize = os.fsync
@@ -124,10 +132,7 @@ def test_a_missing_file_is_one_sentence(tmp_path):
 
 def test_a_file_that_has_changed_is_not_overwritten(path):
     path.write_bytes(b'the new text of another')
-    with pytest.raises(FileWriteError, match='has changed since it was read'):
-        replace_file(str(path), OLD, NEW)
-    assert path.read_bytes() == b'the new text of another'
-    assert not left_beside(path)
+    assert_refused(path, 'has changed since it was read', b'the new text of another')
 
 
 def test_a_pipe_in_the_place_of_the_file_is_refused(path):
@@ -160,26 +165,18 @@ def test_an_edit_while_the_new_file_is_written_is_kept(path, monkeypatch, edit):
         other.replace(path)
 
     edited_meanwhile(monkeypatch, change)
-    with pytest.raises(FileWriteError, match='has changed since it was read'):
-        replace_file(str(path), OLD, NEW)
-    assert path.read_bytes() == b'THE OLD TEXT'
-    assert not left_beside(path)
+    assert_refused(path, 'has changed since it was read', b'THE OLD TEXT')
 
 
-def test_a_file_with_a_second_name_is_refused(path):
-    os.link(path, path.with_name('second.sdf'))
-    with pytest.raises(
-            FileWriteError, match=r'2 names \(hard links\), and the others would keep'):
-        replace_file(str(path), OLD, NEW)
-    assert path.read_bytes() == OLD
+def test_a_file_with_a_second_name_is_refused(path, tmp_path_factory):
+    os.link(path, tmp_path_factory.mktemp('other') / 'second.sdf')
+    assert_refused(path, r'2 names \(hard links\), and the others would keep')
 
 
 def test_a_file_that_another_process_writes_is_left_alone(path):
     with path.open('rb') as file:
         fcntl.flock(file, fcntl.LOCK_EX)
-        with pytest.raises(FileWriteError, match='another process is writing the file'):
-            replace_file(str(path), OLD, NEW)
-    assert path.read_bytes() == OLD
+        assert_refused(path, 'another process is writing the file')
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason='root may write everywhere')
@@ -188,10 +185,8 @@ def test_without_the_right_to_write_it_is_one_sentence(path, part):
     refusing = path if part == 'file' else path.parent
     mode = refusing.stat().st_mode
     refusing.chmod(mode & 0o555)
-    with pytest.raises(FileWriteError, match='permission denied'):
-        replace_file(str(path), OLD, NEW)
+    assert_refused(path, 'permission denied')
     refusing.chmod(mode)
-    assert path.read_bytes() == OLD
 
 
 def test_an_owner_that_cannot_be_kept_is_a_reason_to_refuse(path, monkeypatch):
@@ -199,22 +194,16 @@ def test_an_owner_that_cannot_be_kept_is_a_reason_to_refuse(path, monkeypatch):
         raise PermissionError(1, 'Operation not permitted')
 
     monkeypatch.setattr(os, 'chown', refuse)
-    with pytest.raises(FileWriteError, match='its owner and group cannot be kept: operation not'):
-        replace_file(str(path), OLD, NEW)
-    assert path.read_bytes() == OLD
-    assert not left_beside(path)
+    assert_refused(path, 'its owner and group cannot be kept: operation not')
 
 
 def test_without_space_the_old_file_is_whole(path):
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, limits[1]))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (len(NEW) - 1, limits[1]))
     try:
-        with pytest.raises(FileWriteError, match='the file cannot be written: file too large'):
-            replace_file(str(path), OLD, bytes(2000))
+        assert_refused(path, 'the file cannot be written: file too large')
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
-    assert path.read_bytes() == OLD
-    assert not left_beside(path)
 
 
 def test_the_content_is_replaced_and_the_mode_stays(path):

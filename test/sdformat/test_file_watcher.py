@@ -22,8 +22,12 @@ def path(tmp_path):
 
 @pytest.fixture
 def watcher(path):
+    return watching(path)
+
+
+def watching(path, read_since_ns=LATER):
     watcher = FileWatcher()
-    watcher.watch([str(path)], LATER)
+    watcher.watch([str(path)], read_since_ns)
     return watcher
 
 
@@ -82,8 +86,7 @@ def test_a_change_is_noticed_once(watcher, path, change):
 
 def test_a_file_that_appears_is_noticed(tmp_path):
     path = tmp_path / 'later.sdf'
-    watcher = FileWatcher()
-    watcher.watch([str(path)], LONG_AGO)
+    watcher = watching(path, LONG_AGO)
     assert not watcher.notices_change()
     path.touch()
     assert watcher.notices_change()
@@ -93,8 +96,7 @@ def test_a_link_that_points_elsewhere_is_noticed(tmp_path, path):
     link, other = tmp_path / 'link.sdf', tmp_path / 'other.sdf'
     other.write_text('old', encoding='utf-8')
     link.symlink_to(path)
-    watcher = FileWatcher()
-    watcher.watch([str(link)], LATER)
+    watcher = watching(link)
     link.unlink()
     link.symlink_to(other)
     assert watcher.notices_change()
@@ -107,18 +109,15 @@ def test_other_files_are_watched_no_longer(watcher, path):
 
 
 def test_a_file_that_changed_while_it_was_read_counts_as_changed_once(path):
-    watcher = FileWatcher()
     read_since_ns = path.stat().st_ctime_ns - 1
-    watcher.watch([str(path)], read_since_ns)
+    watcher = watching(path, read_since_ns)
     assert watcher.notices_change()
     watcher.watch([str(path)], read_since_ns)
     assert not watcher.notices_change()
 
 
 def test_a_file_that_changed_in_the_same_tick_as_the_reading_began_counts_as_changed(path):
-    watcher = FileWatcher()
-    watcher.watch([str(path)], path.stat().st_ctime_ns + 1)
-    assert watcher.notices_change()
+    assert watching(path, path.stat().st_ctime_ns + 1).notices_change()
 
 
 def test_a_time_that_lies_ahead_does_not_make_a_file_change_for_ever(path):
@@ -138,8 +137,7 @@ def test_a_second_change_with_the_same_time_is_noticed_where_times_are_whole_sec
         st_dev=1, st_ino=1, st_size=1, st_mtime_ns=second_ns, st_ctime_ns=second_ns)
     monkeypatch.setattr('os.stat', lambda _path: status)
     monkeypatch.setattr('time.time_ns', lambda: now_ns)
-    watcher = FileWatcher()
-    watcher.watch([str(path)], LATER)
+    watcher = watching(path)
     assert not watcher.notices_change()
     now_ns += 2 * 10**9
     assert watcher.notices_change()

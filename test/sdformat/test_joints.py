@@ -9,15 +9,21 @@ from sdf_texts import codes_of, joint, model_file, only_error, TWO_LINKS, world_
 
 from sdf_pose_bridge import load_text
 
+ENDS = '<parent>a</parent><child>b</child>'
 
-def joint_of_type(joint_type):
-    content = '<parent>a</parent><child>b</child>'
-    return model_file(TWO_LINKS + joint(content, joint_type=joint_type))
+
+def joint_with(content='', joint_type='revolute', frame='', version='1.11', **options):
+    """Load a joint, which may refer to a frame."""
+    loaded, = load_text(model_file(
+        TWO_LINKS + frame + joint(ENDS + content, joint_type=joint_type), version=version),
+        **options).joints
+    return loaded
 
 
 @pytest.mark.parametrize('joint_type', ['', ' ', 'glue', 'hinge', 'fix ed'])
 def test_joint_of_an_unknown_type_is_refused(joint_type):
-    assert codes_of(joint_of_type(joint_type)) == ['ATTRIBUTE_INVALID']
+    assert codes_of(model_file(TWO_LINKS + joint(ENDS, joint_type=joint_type))) == [
+        'ATTRIBUTE_INVALID']
 
 
 @pytest.mark.parametrize('joint_type', [
@@ -25,8 +31,7 @@ def test_joint_of_an_unknown_type_is_refused(joint_type):
     'universal', 'FIXED', ' fixed ',
 ])
 def test_joint_has_a_type(joint_type):
-    joint_of_scene, = load_text(joint_of_type(joint_type)).joints
-    assert joint_of_scene.type == joint_type.strip().lower()
+    assert joint_with('', joint_type).type == joint_type.strip().lower()
 
 
 @pytest.mark.parametrize(('content', 'joint_type', 'code'), [
@@ -77,16 +82,14 @@ def test_ends_of_a_joint_are_stripped():
 
 def axes_of(content, frame='', version='1.11'):
     """Load a joint with these axes in a frame that is rotated."""
-    ends = '<pose degrees="true">0 0 0 90 0 0</pose><parent>a</parent><child>b</child>'
-    loaded, = load_text(model_file(
-        TWO_LINKS + frame + joint(ends + content, joint_type='universal'), version=version)).joints
-    return loaded.axes
+    pose = '<pose degrees="true">0 0 0 90 0 0</pose>'
+    return joint_with(pose + content, 'universal', frame, version).axes
 
 
 @pytest.mark.parametrize('xyz', ['0 0 0', '', '1 0', 'a b c'])
 def test_wrong_axis_is_refused(xyz):
-    content = f'<parent>a</parent><child>b</child><axis><xyz>{xyz}</xyz></axis>'
-    assert codes_of(model_file(TWO_LINKS + joint(content))) == ['ELEMENT_INVALID']
+    axis = f'<axis><xyz>{xyz}</xyz></axis>'
+    assert codes_of(model_file(TWO_LINKS + joint(ENDS + axis))) == ['ELEMENT_INVALID']
 
 
 @pytest.mark.parametrize(('content', 'xyz'), [
@@ -126,17 +129,11 @@ def test_axis_without_limits():
     ('<thread_pitch>0</thread_pitch>', 0.0),
 ])
 def test_pitch_of_a_screw_joint(content, pitch_m):
-    ends = '<parent>a</parent><child>b</child>'
-    loaded, = load_text(model_file(
-        TWO_LINKS + joint(ends + content, joint_type='screw'))).joints
-    assert loaded.screw_pitch_m == pytest.approx(pitch_m)
+    assert joint_with(content, 'screw').screw_pitch_m == pytest.approx(pitch_m)
 
 
 def dynamics_of(content, **options):
-    axis = f'<parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz>{content}</axis>'
-    scene = load_text(
-        model_file(TWO_LINKS + joint(axis, joint_type='revolute')), **options)
-    axis = scene.joints[0].axes[0]
+    axis, _ = joint_with(f'<axis>{content}</axis>', **options).axes
     return axis.effort, axis.velocity, axis.damping, axis.friction
 
 
@@ -164,8 +161,7 @@ def test_dynamics_are_not_read_unless_they_are_asked_for():
     ('revolute', (-1e16, 1e16), False), ('prismatic', (0, 90), False)])
 def test_limits_in_degrees_are_a_warning(joint_type, limits, is_warned):
     lower, upper = limits
-    scene = load_text(model_file(TWO_LINKS + joint(
-        '<parent>a</parent><child>b</child><axis><limit>'
-        f'<lower>{lower}</lower><upper>{upper}</upper></limit></axis>', joint_type=joint_type)))
+    axis = f'<axis><limit><lower>{lower}</lower><upper>{upper}</upper></limit></axis>'
+    scene = load_text(model_file(TWO_LINKS + joint(ENDS + axis, joint_type=joint_type)))
     assert [w.message for w in scene.warnings] == is_warned * [
         f'the limits {lower:g} to {upper:g} of joint "j" are radians; they look like degrees']

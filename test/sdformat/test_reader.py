@@ -8,7 +8,9 @@ from sdf_texts import (
     codes_of,
     errors_of,
     errors_of_file,
+    errors_of_files,
     fixed_joint,
+    INCLUDES_LEAF,
     joint,
     LINK,
     LINK_CHILDREN,
@@ -17,6 +19,7 @@ from sdf_texts import (
     names_of,
     only_error,
     posed,
+    scene_from_files,
     TWO_LINKS,
     warning_codes,
     world_file,
@@ -112,17 +115,9 @@ def test_name_with_the_separator_is_refused(text):
     assert codes_of(text)[0] == 'RESERVED_NAME'
 
 
-def test_name_of_an_include_with_the_separator_is_refused(tmp_path):
-    write_files(tmp_path, leaf=model_file(LINK), main=world_file(
-        '<include><uri>leaf.sdf</uri><name>a::b</name></include>'))
-    assert 'RESERVED_NAME' in [error.code for error in errors_of_file(tmp_path / 'main.sdf')]
-
-
 def test_name_with_the_separator_in_an_old_file_that_a_newer_file_includes_is_refused(tmp_path):
-    write_files(
-        tmp_path, leaf=model_file('<link name="a::b"/>', version='1.6'),
-        main=world_file('<include><uri>leaf.sdf</uri></include>'))
-    (error,) = errors_of_file(tmp_path / 'main.sdf')
+    (error,) = errors_of_files(
+        tmp_path, main=INCLUDES_LEAF, leaf=model_file('<link name="a::b"/>', version='1.6'))
     assert (error.code, error.file) == ('RESERVED_NAME', str(tmp_path / 'leaf.sdf'))
 
 
@@ -135,8 +130,8 @@ def test_name_with_the_separator_in_an_old_file_is_accepted():
 def test_name_of_an_include_with_the_separator_in_an_old_file_is_accepted(tmp_path, attributes):
     include = f'<include {attributes}><uri>leaf.sdf</uri><name>a::b</name></include>'
     main = model_file('<link name="k"/>' + include, version='1.6')
-    write_files(tmp_path, leaf=model_file(LINK), main=main)
-    assert 'm::k' in load(tmp_path / 'main.sdf').names
+    scene = scene_from_files(tmp_path, leaf=model_file(LINK), main=main)
+    assert 'm::k' in scene.names
 
 
 @pytest.mark.parametrize('content', [
@@ -203,21 +198,21 @@ def test_degrees_that_are_no_boolean_are_refused(value):
 
 @pytest.mark.parametrize('text', [
     model_file('<pose>zz</pose>' + LINK),
-    model_file(LINK + posed('frame', 'f', 'zz')),
-    model_file(LINK + '<model name="n"><pose>zz</pose><link name="l"/></model>'),
-    model_file(TWO_LINKS + fixed_joint('j', 'a', 'b', '<pose>zz</pose>')),
-    world_file(posed('frame', 'f', 'zz')),
-    world_file(posed('light', 'f', 'zz')),
-    world_file(posed('actor', 'f', 'zz')),
+    *(model_file(TWO_LINKS + content) for content in (
+        posed('frame', 'f', 'zz'), '<model name="n"><pose>zz</pose><link name="l"/></model>',
+        '<joint name="j" type="fixed"><parent>a</parent><child>b</child><pose>zz</pose></joint>')),
+    *(world_file(content) for content in (
+        posed('frame', 'f', 'zz'), posed('light', 'f', 'zz'), posed('actor', 'f', 'zz'),
+        '<gui><camera name="c"><pose>zz</pose></camera></gui>',
+        '<state world_name="w"><model name="m"><pose>zz</pose></model></state>',
+        WAYPOINT.format('zz'))),
     *(link_with(posed(tag, 'x', 'zz')) for tag in LINK_CHILDREN),
-    link_with('<inertial><pose>zz</pose></inertial>'),
-    link_with('<sensor name="s" type="camera"><camera><pose>zz</pose></camera></sensor>'),
-    link_with('<audio_source><uri>a.wav</uri><pose>zz</pose></audio_source>'),
-    link_with('<audio_source><pose>1 2</pose></audio_source>'),
-    world_file('<gui><camera name="c"><pose>zz</pose></camera></gui>'),
-    world_file('<state world_name="w"><model name="m"><pose>zz</pose></model></state>'),
-    world_file(WAYPOINT.format('zz')),
-    link_with('<pose>1 0 0 0 0 0</pose><pose>zz</pose>'),
+    *map(link_with, (
+        '<inertial><pose>zz</pose></inertial>',
+        '<sensor name="s" type="camera"><camera><pose>zz</pose></camera></sensor>',
+        '<audio_source><uri>a.wav</uri><pose>zz</pose></audio_source>',
+        '<audio_source><pose>1 2</pose></audio_source>',
+        '<pose>1 0 0 0 0 0</pose><pose>zz</pose>')),
 ])
 def test_every_pose_is_checked(text):
     assert codes_of(text) == ['ELEMENT_INVALID']
@@ -253,7 +248,7 @@ def test_angles_in_degrees(value):
 
 @pytest.mark.parametrize('text', [
     link_with('<inertial><pose relative_to="nowhere">1 0 0 0 0 0</pose></inertial>'),
-    world_file(posed('actor', 'a', '1 0 0 0 0 0', 'nowhere')),
+    world_file('<actor name="a"><pose relative_to="nowhere">1 0 0 0 0 0</pose></actor>'),
     f'<sdf version="1.9">{posed("light", "x", "1 0 0 0 0 0", "y")}</sdf>',
 ])
 def test_reference_that_has_no_effect_is_ignored_with_a_warning(text):
@@ -296,9 +291,9 @@ def test_elements_added_too_deep_are_refused(tmp_path):
     params = ('<experimental:params><model element_id="' + '::'.join(['mm'] * 199)
               + '" name="added" action="add">' + nested_models(150, LINK)
               + '</model></experimental:params>')
-    write_files(tmp_path, leaf=file_of_nested_models(200, LINK), main=world_file(
-        f'<include><uri>leaf.sdf</uri>{params}</include>'))
-    (error,) = errors_of_file(tmp_path / 'main.sdf')
+    (error,) = errors_of_files(
+        tmp_path, leaf=file_of_nested_models(200, LINK),
+        main=world_file(f'<include><uri>leaf.sdf</uri>{params}</include>'))
     assert (error.message, error.file) == (TOO_DEEP, str(tmp_path / 'main.sdf'))
 
 
@@ -320,16 +315,16 @@ def test_error_in_a_deep_element_has_its_path():
 
 # The implicit root cannot be named
 
-@pytest.mark.parametrize(('text', 'code'), [
-    (model_file(posed('link', 'l', '', '__root__')), 'ATTRIBUTE_INVALID'),
-    (model_file(LINK + '<frame name="f" attached_to="__root__"/>'), 'ATTRIBUTE_INVALID'),
-    (model_file(LINK, attributes='canonical_link="__root__"'), 'ATTRIBUTE_INVALID'),
-    (model_file(LINK, attributes='placement_frame="__root__"'), 'ATTRIBUTE_INVALID'),
-    (model_file(LINK + fixed_joint('j', '__root__', 'l')), 'RESERVED_NAME'),
-    (model_file(LINK + fixed_joint('j', 'l', '__root__')), 'RESERVED_NAME'),
+@pytest.mark.parametrize(('content', 'attributes', 'code'), [
+    ('<frame name="f"><pose relative_to="__root__"/></frame>', '', 'ATTRIBUTE_INVALID'),
+    ('<frame name="f" attached_to="__root__"/>', '', 'ATTRIBUTE_INVALID'),
+    ('', 'canonical_link="__root__"', 'ATTRIBUTE_INVALID'),
+    ('', 'placement_frame="__root__"', 'ATTRIBUTE_INVALID'),
+    (fixed_joint('j', '__root__', 'l'), '', 'RESERVED_NAME'),
+    (fixed_joint('j', 'l', '__root__'), '', 'RESERVED_NAME'),
 ])
-def test_reference_to_the_implicit_root_is_refused(text, code):
-    error = errors_of(text)[0]
+def test_reference_to_the_implicit_root_is_refused(content, attributes, code):
+    error = errors_of(model_file(LINK + content, attributes=attributes))[0]
     assert error.code == code
     assert '"__root__"' in error.message
 
@@ -406,8 +401,7 @@ def test_elements_of_urdf_are_kept():
 # Hints
 
 def test_nearest_type_is_named():
-    text = model_file('<link name="a"/><link name="b"/>' + joint(
-        '<parent>a</parent><child>b</child>', joint_type='fix'))
+    text = model_file(TWO_LINKS + joint('<parent>a</parent><child>b</child>', joint_type='fix'))
     assert only_error(text).message.endswith('universal; did you mean "fixed"?')
 
 

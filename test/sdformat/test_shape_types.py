@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every type of shape, and that all who use one mean the same body."""
 
+from matrices import assert_close
 import numpy as np
 import pytest
 from sdf_texts import link_with
@@ -124,8 +125,7 @@ def test_marker_extends_as_far_as_the_surface(name):
     ends = [
         marker.points if len(marker.points) else ends_of(marker.scale, marker.pose.z)
         for marker in markers]
-    np.testing.assert_allclose(
-        extent_of(np.concatenate(ends)), extent_of(surface_of(name)[0]), rtol=1e-12)
+    assert_close(extent_of(np.concatenate(ends)), extent_of(surface_of(name)[0]), 1e-12)
 
 
 # What is special about one type
@@ -138,9 +138,6 @@ def test_cone_ends_above():
 @pytest.mark.parametrize('length_m', [0.0, -1.0])
 def test_capsule_without_a_length_is_a_sphere(length_m):
     assert parts_of('capsule', 2.0, length_m) == parts_of('sphere', 2.0)
-    for ours, others in zip(
-            solid_of('capsule', 2.0, length_m), solid_of('sphere', 2.0), strict=True):
-        assert ours == pytest.approx(others)
-    for ours, others in zip(
-            surface_of('capsule', 2.0, length_m), surface_of('sphere', 2.0), strict=True):
-        np.testing.assert_allclose(ours, others)
+    for of in (solid_of, surface_of):
+        for ours, others in zip(of('capsule', 2.0, length_m), of('sphere', 2.0), strict=True):
+            assert_close(ours, others)

@@ -163,7 +163,7 @@ def test_elements_of_different_scopes_may_share_a_name():
 
 # Elements of different kinds with one name in files below 1.7
 
-J = fixed_joint('l', 'l', 'k')
+J = '<joint name="l" type="fixed"><parent>l</parent><child>k</child></joint>'
 
 
 @pytest.mark.parametrize(('content', 'name'), [

@@ -3,7 +3,15 @@
 """Where elements were written: files and lines, also beyond the lines that libxml2 counts."""
 
 import pytest
-from sdf_texts import errors_of_file, LINK, model_file, only_error, world_file, write_files
+from sdf_texts import (
+    INCLUDES_LEAF,
+    LINK,
+    model_file,
+    only_error,
+    scene_from_files,
+    world_file,
+    write_files,
+)
 
 from sdf_pose_bridge import load, load_text
 
@@ -129,28 +137,16 @@ def test_lines_of_a_long_file_that_is_included_twice_or_merged(folder, main, nam
 
 
 def test_element_stands_where_its_include_places_it(tmp_path):
-    write_files(
+    scene = scene_from_files(
         tmp_path, leaf=model_file('\n' + LINK),
         main=world_file('\n\n<include><uri>leaf.sdf</uri>\n<pose>1 0 0 0 0 0</pose></include>'))
-    scene = load(tmp_path / 'main.sdf')
     assert place_of(scene, 'm') == (str(tmp_path / 'main.sdf'), 3)
     assert place_of(scene, 'm::l') == (str(tmp_path / 'leaf.sdf'), 2)
 
 
 def test_element_that_its_include_does_not_place_stands_in_its_file(tmp_path):
-    write_files(
-        tmp_path, leaf=model_file(LINK),
-        main=world_file('\n\n<include><uri>leaf.sdf</uri><name>a</name></include>'))
-    assert place_of(load(tmp_path / 'main.sdf'), 'a') == (str(tmp_path / 'leaf.sdf'), 1)
-
-
-def test_name_of_an_include_stands_in_the_including_file(tmp_path):
-    write_files(
-        tmp_path, leaf=model_file(LINK),
-        main=world_file('\n<include><uri>leaf.sdf</uri><name>world</name></include>'))
-    (error,) = errors_of_file(tmp_path / 'main.sdf')
-    assert (error.code, error.file, error.line) == (
-        'RESERVED_NAME', str(tmp_path / 'main.sdf'), 2)
+    scene = scene_from_files(tmp_path, leaf=model_file(LINK), main=INCLUDES_LEAF)
+    assert place_of(scene, 'm') == (str(tmp_path / 'leaf.sdf'), 1)
 
 
 def test_all_files_that_were_read_are_listed(tmp_path):

@@ -14,7 +14,6 @@ from sdf_texts import (
     model_file,
     names_of,
     part_of_model,
-    posed,
     TWO_LINKS,
 )
 
@@ -177,7 +176,7 @@ def test_reference_from_a_nested_model_to_outside_cannot_be_converted(content, c
 @pytest.mark.parametrize('kind', KINDS_IN_MODELS, ids=lambda kind: kind.label)
 def test_every_kind_in_a_model_moves_into_the_nested_model(kind):
     part = part_of_model(kind, 'n::x').replace('>a<', '>n::a<').replace('>b<', '>n::b<')
-    nested = '<link name="n::a"/>' + posed('link', 'n::b', '1 0 0 0 0 0') + part
+    nested = '<link name="n::a"/><link name="n::b"><pose>1 0 0 0 0 0</pose></link>' + part
     scene = load_text(world(nested))
     assert scene.pose('m::n::x', relative_to='m::n')[5] != 0.0
 

@@ -324,15 +324,12 @@ def test_declared_encoding_does_not_matter_for_decoded_text(encoding):
 
 # Characters that XML does not have
 
-MODEL = '<sdf version="1.9"><model name="m"><link name="l">{}</link></model></sdf>'
-
-
 @pytest.mark.parametrize('text', [
     '&#1;', '&#xD800;', '&#55296;', '&#xFFFF;', '&#x110000;', '&#1114112;',
     '&#99999999999;', '\x01', '\ufffe', '<!-- \x01 -->', '<!-- \ufffe -->', '<![CDATA[\x01]]>',
 ])
 def test_characters_that_xml_does_not_have_are_replaced_in_text(text):
-    scene = load_text(MODEL.format(text))
+    scene = load_text(link_with(text))
     assert scene.names[-1] == 'm::l'
     assert 'is no character of XML; it is replaced' in scene.warnings[0].message
 
@@ -350,7 +347,7 @@ def test_characters_that_xml_does_not_have_are_read_in_names_and_references(text
 
 @pytest.mark.parametrize('text', ['&#65;', '&#x1F916;', '&#x0000000041;', '&#10;', '\t'])
 def test_other_characters_are_read(text):
-    assert not load_text(MODEL.format(text)).warnings
+    assert not load_text(link_with(text)).warnings
 
 
 # The declaration
@@ -358,12 +355,12 @@ def test_other_characters_are_read(text):
 @pytest.mark.parametrize('before', [
     'abc ', '<!DOCTYPE sdf>', '<!-- c -->', '<![CDATA[x]]>', 'a\n'])
 def test_declaration_after_something_else_is_refused(before):
-    assert codes_of(f'{before}<?xml version="1.0"?>{MODEL.format("")}') == ['FILE_READ']
+    assert codes_of(f'{before}<?xml version="1.0"?>{link_with("")}') == ['FILE_READ']
 
 
 @pytest.mark.parametrize('before', ['\n', '\ufeff ', '<?xml version="1.0"?>'])
 def test_declaration_after_white_space_or_another_has_a_warning(before):
-    scene = load_text(f'{before}<?xml version="1.0"?>{MODEL.format("")}')
+    scene = load_text(f'{before}<?xml version="1.0"?>{link_with("")}')
     assert 'the declaration is not at the beginning' in scene.warnings[0].message
 
 

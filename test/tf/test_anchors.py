@@ -3,7 +3,7 @@
 """Which models get a transform from the root frame: words, and patterns of their names."""
 
 import pytest
-from sdf_texts import fixed_joint, LINK, model_file, world_file
+from sdf_texts import LINK, model_file, world_file
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.tf.anchors import AnchorModels, AnchorPatterns, anchors_from_text
@@ -14,10 +14,18 @@ def model(name, content=LINK):
     return f'<model name="{name}">{content}</model>'
 
 
-WORLD = world_file(
-    model('table1', '<static>1</static>' + LINK) + model('table2') + model('robot1')
-    + model('robot2', LINK + model('table3'))
-    + model('arm', LINK + fixed_joint('j', 'world', 'l')))
+WORLD = world_file("""
+    <model name="table1"><static>1</static><link name="l"/></model>
+    <model name="table2"><link name="l"/></model>
+    <model name="robot1"><link name="l"/></model>
+    <model name="robot2">
+      <link name="l"/>
+      <model name="table3"><link name="l"/></model>
+    </model>
+    <model name="arm">
+      <link name="l"/>
+      <joint name="j" type="fixed"><parent>world</parent><child>l</child></joint>
+    </model>""")
 
 
 def tree_with(anchors, text=WORLD):

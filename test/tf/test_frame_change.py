@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measured poses in the file of a scene whose joints move."""
 
+from matrices import assert_close
 import numpy as np
 import pytest
-from sdf_texts import joint, model_file, posed
+from sdf_texts import model_file
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.errors import SdfError
@@ -14,11 +15,16 @@ from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadRequest
 from sdf_pose_bridge.tf.loading import loaded_scene_from_request
 from sdf_pose_bridge.tf.tree import TfOptions
 
-ARM = model_file(
-    '<link name="base"/>' + posed('link', 'tool', '1 0 0 0 0 0')
-    + posed('frame', 'mark', '2 0 0 0 0 0') + posed('frame', 'on_mark', '0 0 1 0 0 0', 'mark')
-    + joint('<pose relative_to="base"/><parent>base</parent><child>tool</child>'
-            '<axis><xyz>0 0 1</xyz></axis>', 'turn', 'revolute'))
+ARM = model_file("""
+    <link name="base"/>
+    <link name="tool"><pose>1 0 0 0 0 0</pose></link>
+    <frame name="mark"><pose>2 0 0 0 0 0</pose></frame>
+    <frame name="on_mark"><pose relative_to="mark">0 0 1 0 0 0</pose></frame>
+    <joint name="turn" type="revolute"><pose relative_to="base"/>
+      <parent>base</parent>
+      <child>tool</child>
+      <axis><xyz>0 0 1</xyz></axis>
+    </joint>""")
 
 
 @pytest.fixture(name='change')
@@ -42,8 +48,7 @@ def make_change(tmp_path):
 
 def test_a_pose_is_taken_where_its_reference_has_moved_to(change):
     text = change('mark', Pose(0.5), 'tool', np.pi / 2)
-    np.testing.assert_allclose(
-        load_text(text).pose('m::mark')[:3], (0.0, 1.5, 0.0), atol=1e-9)
+    assert_close(load_text(text).pose('m::mark')[:3], (0.0, 1.5, 0.0))
 
 
 def test_a_file_that_is_not_what_is_published(change):

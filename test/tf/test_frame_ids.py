@@ -7,7 +7,7 @@ import pytest
 from sdf_texts import element, fixed_joint, model_file, TWO_LINKS, world_file
 from tf_checks import model, only_tree_error, parents_of, pose_of, tree_of
 
-import sdf_pose_bridge
+from sdf_pose_bridge import load_text
 from sdf_pose_bridge.tf.frame_ids import FrameNames, FrameNaming
 
 NESTED = '<link name="l"/><model name="n"><link name="k"/></model>'
@@ -16,7 +16,7 @@ CHILDREN = ['visual', 'collision', 'light', 'particle_emitter', 'projector']
 
 def ids_of(text, *arguments):
     """Return the frame ids of all elements but roots."""
-    scene = sdf_pose_bridge.load_text(text)
+    scene = load_text(text)
     return FrameNaming(*arguments).frame_ids_from_scene(scene, np.flatnonzero(scene.parents >= 0))
 
 
@@ -64,7 +64,7 @@ def test_kinds_that_share_names_have_the_kind_in_the_id(tag):
 
 
 @pytest.mark.parametrize(('content', 'frame_id'), [
-    (f'<link name="l">{element("sensor", "s")}</link>', 'm/l/s'),
+    ('<link name="l"><sensor name="s" type="camera"/></link>', 'm/l/s'),
     (TWO_LINKS + fixed_joint('j', 'a', 'b', element('sensor', 's')), 'm/j/s'),
     ('<link name="l"><inertial/></link>', 'm/l/inertial'),
 ])
@@ -73,7 +73,7 @@ def test_kinds_that_share_no_names(content, frame_id):
 
 
 def test_a_light_and_an_actor_of_a_world():
-    text = world_file(element('light', 'sun') + element('actor', 'man'))
+    text = world_file('<light name="sun" type="point"/><actor name="man"/>')
     assert ids_of(text) == ['light/sun', 'actor/man']
 
 

@@ -72,9 +72,13 @@ def test_the_optical_frame_of_a_camera_with_the_frame_id_of_a_link():
 
 
 def test_an_optical_frame_that_the_file_has_is_left_alone():
-    text = model_file(
-        '<link name="l">' + camera(inside='<optical_frame_id>eye</optical_frame_id>')
-        + '</link>' + posed('frame', 'eye', '0 0 5 0 0 0'))
+    text = model_file("""
+        <link name="l">
+          <sensor name="cam" type="camera"><pose>1 0 0 0 0 0</pose>
+            <camera><optical_frame_id>eye</optical_frame_id></camera>
+          </sensor>
+        </link>
+        <frame name="eye"><pose>0 0 5 0 0 0</pose></frame>""")
     tree = tree_of(text)
     assert sorted(tree.frame_ids) == ['eye', 'l', 'l/cam', 'm']
     assert pose_of(tree, 'eye')[:3] == [0, 0, 5]
@@ -185,8 +189,15 @@ def test_frames_at_joints_have_the_prefix():
 
 @pytest.mark.parametrize(('text', 'ids'), [
     ('<robot name="m"><link name="world"/></robot>', ['world']),
-    (model_file(
-        f'<link name="a">{camera()}</link><link name="b"/>' + joint(AWAY, 'j', 'screw')),
+    (model_file("""
+        <link name="a">
+          <sensor name="cam" type="camera"><pose>1 0 0 0 0 0</pose><camera/></sensor>
+        </link>
+        <link name="b"/>
+        <joint name="j" type="screw"><pose>0 1 0 0 0 0</pose>
+          <parent>a</parent>
+          <child>b</child>
+        </joint>"""),
      ['m', 'a', 'a/cam', 'b', 'a/cam_optical', 'j_slide_frame'])])
 def test_all_frame_ids_are_made_in_one_place(monkeypatch, text, ids):
     make = FrameNaming.frame_id_from_name

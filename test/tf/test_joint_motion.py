@@ -5,7 +5,7 @@
 import math
 
 from joint_trees import link_matrices, model_text, pose_text, POSES, POSITIONS, random_joints
-from matrices import assert_same_pose, matrix_from_degrees, matrix_from_pose
+from matrices import assert_close, assert_same_pose, matrix_from_degrees, matrix_from_pose
 import numpy as np
 import pytest
 from random_scenes import random_scenes
@@ -73,9 +73,10 @@ def test_a_joint_moves(text, name, x):
 
 
 def test_the_last_joint_of_a_loop_moves_nothing():
-    joints = ''.join(
-        f'<joint name="{name}" type="revolute"><parent>{parent}</parent><child>{child}</child>'
-        '</joint>' for name, parent, child in ('xab', 'ybc', 'zac'))
+    joints = """
+        <joint name="x" type="revolute"><parent>a</parent><child>b</child></joint>
+        <joint name="y" type="revolute"><parent>b</parent><child>c</child></joint>
+        <joint name="z" type="revolute"><parent>a</parent><child>c</child></joint>"""
     links = ''.join(f'<link name="{name}"/>' for name in 'abc')
     scene, motion = motion_of(model_file(links + joints))
     assert [scene.names[each.joint.element] for each in motion.dofs] == ['m::x', 'm::y']
@@ -105,10 +106,12 @@ def test_random_trees_move_as_products_of_matrix_exponentials(data, count):
 # Frames
 
 CAMERA = '<sensor name="s" type="camera"><pose>1 0 0 0 0 0</pose></sensor>'
-ARM = (
-    f'<link name="a"/><link name="b">{CAMERA}</link><link name="c"><pose>0 1 0 0 0 0</pose></link>'
-    + joint('<parent>a</parent><child>b</child>', 'j', 'revolute')
-    + joint('<parent>b</parent><child>c</child>', 'k', 'revolute'))
+ARM = """
+    <link name="a"/>
+    <link name="b"><sensor name="s" type="camera"><pose>1 0 0 0 0 0</pose></sensor></link>
+    <link name="c"><pose>0 1 0 0 0 0</pose></link>
+    <joint name="j" type="revolute"><parent>a</parent><child>b</child></joint>
+    <joint name="k" type="revolute"><parent>b</parent><child>c</child></joint>"""
 
 
 def moving_tree(text, **options):
@@ -144,7 +147,7 @@ def test_a_frame_moves_by_all_joints_up_to_the_next_published_frame():
     text = model_file(ARM.replace(CAMERA, '') + '<frame name="f" attached_to="c"/>')
     tree = moving_tree(text, kinds=frozenset({Kind.FRAME}), anchor_models=AnchorModels.ALL)
     transform, = tree.moving.transforms(np.array([np.pi / 2, np.pi / 2]))
-    np.testing.assert_allclose(transform, [-1, 0, 0, 0, 0, 1, 0], atol=1e-15)
+    assert_close(transform, [-1, 0, 0, 0, 0, 1, 0], 1e-15)
 
 
 def test_a_model_that_is_not_anchored_has_no_transform_to_move():
@@ -177,7 +180,7 @@ def test_poses_in_the_pose_frame_are_those_that_a_lookup_finds(pose_frame):
         poses[tree.moving.posed_indices] = tree.moving.poses(positions)
         lookup = PoseLookup(scene, tree, known_positions(scene, tree, positions))
         expected = [lookup.pose(frame_id, pose_frame).pose for frame_id in tree.frame_ids]
-        np.testing.assert_allclose(poses, expected, atol=1e-15)
+        assert_close(poses, expected, 1e-15)
 
 
 def test_transforms_depend_on_what_they_cross():
@@ -228,8 +231,7 @@ def test_transforms_along_the_tree_give_the_poses(data, count):
         if parent != ROOT_IS_PARENT:
             transform = pose_products(poses[[parent]], transform[np.newaxis])[0]
         sign = 1.0 if transform[3:] @ pose[3:] > 0.0 else -1.0
-        np.testing.assert_allclose(
-            [*transform[:3], *sign * transform[3:]], pose, rtol=0.0, atol=1e-12)
+        assert_close([*transform[:3], *sign * transform[3:]], pose, 1e-12)
 
 
 # Models that move freely
@@ -286,9 +288,9 @@ def test_frames_move_with_their_models(drawn, data, use_joint_states):
     expected = [
         displacement(element) @ in_file[scene.names[element]] for element in tree.elements]
     found = composed_matrices(tree, moving.transforms(values))
-    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-12)
+    assert_close(found, expected, 1e-12)
     if tree.pose_frame != tree.root_frame:
         in_root = np.linalg.inv(expected[ids.index(tree.pose_frame)])
         expected = [in_root @ each for each in expected]
     for row, pose in zip(moving.posed_indices.tolist(), moving.poses(values), strict=True):
-        np.testing.assert_allclose(matrix_from_pose(pose), expected[row], rtol=0.0, atol=1e-12)
+        assert_close(matrix_from_pose(pose), expected[row], 1e-12)

@@ -19,13 +19,14 @@ from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 ENDS = '<parent>a</parent><child>b</child>'
 LINKS = '<link name="a"/><link name="b"/><link name="c"/>'
+ONE_JOINT = LINKS + joint(ENDS, 'j', 'revolute')
 MIMIC = (
-    '<axis><xyz>0 0 1</xyz><mimic joint="{leader}" axis="{axis}"><multiplier>2</multiplier>'
+    '<axis><xyz>0 0 1</xyz><mimic joint="{}"><multiplier>2</multiplier>'
     '<offset>1</offset><reference>0.5</reference></mimic></axis>')
 
 
 def model(name, content=''):
-    return f'<model name="{name}">{LINKS}{joint(ENDS, "j", "revolute")}{content}</model>'
+    return f'<model name="{name}">{ONE_JOINT}{content}</model>'
 
 
 def positions_of(text, model=''):
@@ -43,11 +44,18 @@ def values_of(positions):
     return dict(zip(positions.names, positions.values.tolist(), strict=True))
 
 
-def following(leader='j', axis='axis', name='k'):
-    """Write a joint from b to c that follows another one."""
+def following(leader='j', name='k', parent='b', child='c'):
+    """Write a joint that follows another one."""
     return joint(
-        '<parent>b</parent><child>c</child>' + MIMIC.format(leader=leader, axis=axis),
-        name, 'revolute')
+        f'<parent>{parent}</parent><child>{child}</child>{MIMIC.format(leader)}', name, 'revolute')
+
+
+LEADER = LINKS + joint(f'{ENDS}<axis><xyz>0 0 1</xyz></axis>', 'j', 'revolute')
+TWO_MODELS = world_file(model('x') + model('y'))
+
+
+def positions_in_model(content=ONE_JOINT):
+    return positions_of(model_file(content, version='1.11'))
 
 
 def test_leading_joints_are_in_file_order():
@@ -63,7 +71,7 @@ def test_leading_joints_are_in_file_order():
 
 @pytest.mark.parametrize('name', ['', 'zz', 'm/zz', 'zz::j', 'J', 'j_axis2', '/j'])
 def test_unknown_names(name):
-    positions = positions_of(model_file(LINKS + joint(ENDS, 'j', 'revolute')))
+    positions = positions_in_model()
     assert positions.unknown([name]) == [name]
     assert not len(positions.selection([name]).dofs)
 
@@ -83,7 +91,7 @@ def test_names(text, only_model, names, dofs):
 def test_names_inside_one_model_are_not_those_of_others():
     positions = positions_of(world_file(
         model('x') + f'<model name="y"><model name="z">{LINKS}'
-        f'{joint(ENDS, "k", "revolute")}</model>{LINKS}{joint(ENDS, "j", "revolute")}</model>'))
+        f'{joint(ENDS, "k", "revolute")}</model>{ONE_JOINT}</model>'))
     assert positions.models == ('x', 'y')
     names = ['j', 'y/j', 'y::z::k', 'z/k', 'k', 'x/j']
     selection = positions.selection(names, 'y')
@@ -94,7 +102,7 @@ def test_names_inside_one_model_are_not_those_of_others():
 
 
 def test_a_joint_with_several_degrees_of_freedom_is_missing_once():
-    positions = positions_of(model_file(LINKS + joint(ENDS, 'j', 'ball')))
+    positions = positions_in_model(LINKS + joint(ENDS, 'j', 'ball'))
     assert positions.unreported() == (['j_yaw'], [])
     positions.update(positions.selection(positions.names[:1]), np.zeros(1))
     assert positions.unreported() == (['j_pitch'], [])
@@ -103,7 +111,7 @@ def test_a_joint_with_several_degrees_of_freedom_is_missing_once():
 
 
 @pytest.mark.parametrize('text', [
-    model_file(LINKS + joint(ENDS, 'j', 'revolute')),
+    model_file(ONE_JOINT),
     world_file(f'<model name="m"><static>true</static>{LINKS}</model>'),
     world_file('<model name="m"><link name="a"/></model><model name="n"><link name="a"/></model>'
                '<joint name="j" type="revolute"><parent>m::a</parent><child>n::a</child>'
@@ -121,39 +129,38 @@ def test_a_message_about_a_joint_is_one_about_all_joints_of_its_model():
 
 
 def test_the_second_joint_that_a_screw_joint_has_in_urdf_is_not_unknown():
-    text = model_file(
-        f'{LINKS}<joint name="j" type="screw"><parent>a</parent><child>b</child></joint>'
+    positions = positions_in_model(
+        LINKS + joint(ENDS, 'j', 'screw')
         + joint('<parent>b</parent><child>c</child>', 'k', 'revolute'))
-    assert positions_of(text).unknown(['j', 'j_slide', 'k_slide']) == ['k_slide']
+    assert positions.unknown(['j', 'j_slide', 'k_slide']) == ['k_slide']
 
 
 def test_the_name_of_a_joint_itself_comes_first():
-    text = model_file(LINKS + joint(ENDS, 'j', 'revolute') + model('n'))
-    positions = positions_of(text)
+    positions = positions_in_model(ONE_JOINT + model('n'))
     assert positions.selection(['j', 'n/j']).dofs.tolist() == [
         positions.names.index('j'), positions.names.index('n/j')]
 
 
 def test_names_of_a_second_axis_and_of_a_ball_joint():
     axes = '<axis><xyz>1 0 0</xyz></axis><axis2><xyz>0 1 0</xyz></axis2>'
-    text = model_file(
+    positions = positions_in_model(
         LINKS + joint(ENDS + axes, 'u', 'universal')
         + joint('<parent>b</parent><child>c</child>', 'o', 'ball'))
-    assert set(positions_of(text).names) == {'u', 'u_axis2', 'o_roll', 'o_pitch', 'o_yaw'}
+    assert set(positions.names) == {'u', 'u_axis2', 'o_roll', 'o_pitch', 'o_yaw'}
 
 
 # Positions
 
 @pytest.mark.parametrize('value', [np.nan, np.inf, -np.inf, 1.1e9, -1e300])
 def test_positions_that_are_no_positions_are_not_taken(value):
-    positions = positions_of(model_file(LINKS + joint(ENDS, 'j', 'revolute')))
+    positions = positions_in_model()
     update(positions, j=0.5)
     assert update(positions, j=value) == ['j']
     assert positions.values.tolist() == [0.5]
 
 
 def test_a_wrong_position_leaves_the_others():
-    positions = positions_of(world_file(model('x') + model('y')))
+    positions = positions_of(TWO_MODELS)
     selection = positions.selection(['x/j', 'y/j'])
     for value in (1.0, 2.0):  # of one time
         assert positions.update(selection, np.array([np.nan, value]), 5) == ['x/j']
@@ -162,16 +169,14 @@ def test_a_wrong_position_leaves_the_others():
 
 
 def test_a_follower_moves_with_its_leader():
-    positions = positions_of(model_file(LINKS + joint(
-        ENDS + '<axis><xyz>0 0 1</xyz></axis>', 'j', 'revolute') + following(), version='1.11'))
+    positions = positions_in_model(LEADER + following())
     assert positions.values.tolist() == [0.0, 0.0]
     update(positions, j=2.0)
     assert values_of(positions) == {'j': 2.0, 'k': 4.0}
 
 
 def test_a_follower_stays_while_its_leader_has_no_position():
-    positions = positions_of(model_file(LINKS + joint(
-        ENDS + '<axis><xyz>0 0 1</xyz></axis>', 'j', 'revolute') + following(), version='1.11'))
+    positions = positions_in_model(LEADER + following())
     assert update(positions, j=np.nan) == ['j']
     assert values_of(positions) == {'j': 0.0, 'k': 0.0}
     assert not positions.is_reported.any()
@@ -179,17 +184,15 @@ def test_a_follower_stays_while_its_leader_has_no_position():
 
 
 def test_the_position_of_a_follower_can_be_given():
-    positions = positions_of(model_file(LINKS + joint(
-        ENDS + '<axis><xyz>0 0 1</xyz></axis>', 'j', 'revolute') + following(), version='1.11'))
+    positions = positions_in_model(LEADER + following())
     update(positions, k=7.0, j=2.0)
     assert values_of(positions) == {'j': 2.0, 'k': 7.0}
 
 
 def test_a_follower_of_a_follower_moves_with_it_unless_that_is_too_far():
-    positions = positions_of(model_file(LINKS + '<link name="d"/><link name="e"/>' + joint(
-        ENDS + '<axis><xyz>0 0 1</xyz></axis>', 'j', 'revolute') + following() + ''.join(joint(
-            f'<parent>c</parent><child>{child}</child>' + MIMIC.format(leader=leader, axis='axis'),
-            name, 'revolute') for name, child, leader in ('ldk', 'iej')), version='1.11'))
+    others = following('k', 'l', 'c', 'd') + following('j', 'i', 'c', 'e')
+    positions = positions_in_model(
+        LEADER + '<link name="d"/><link name="e"/>' + following() + others)
     update(positions, j=2.0)
     assert values_of(positions) == {'j': 2.0, 'k': 4.0, 'l': 8.0, 'i': 4.0}
     update(positions, j=LARGEST_POSITION)
@@ -197,19 +200,18 @@ def test_a_follower_of_a_follower_moves_with_it_unless_that_is_too_far():
 
 
 def test_joints_that_follow_one_another_stop():
-    positions = positions_of(model_file(
-        LINKS + joint(ENDS + MIMIC.format(leader='k', axis='axis'), 'j', 'revolute')
-        + following(), version='1.11'))
+    positions = positions_in_model(
+        LINKS + joint(ENDS + MIMIC.format('k'), 'j', 'revolute') + following())
     update(positions, j=2.0)
     assert values_of(positions) == {'j': 2.0, 'k': 4.0}
 
 
 def test_joints_of_the_same_name_continue_in_another_scene():
-    before = positions_of(model_file(LINKS + joint(ENDS, 'j', 'revolute')))
+    before = positions_in_model()
     update(before, 5, j=2.0)
-    after = positions_of(model_file(
+    after = positions_in_model(
         LINKS + joint(ENDS, 'i', 'revolute')
-        + joint('<parent>b</parent><child>c</child>', 'j', 'revolute')))
+        + joint('<parent>b</parent><child>c</child>', 'j', 'revolute'))
     values = after.values
     after.take_over(before)
     update(after, 4, j=1.0)
@@ -241,7 +243,7 @@ def test_a_joint_with_one_position_has_it_without_a_message():
 # Stamps
 
 def test_an_older_position_does_not_count():
-    positions = positions_of(world_file(model('x') + model('y')))
+    positions = positions_of(TWO_MODELS)
     update(positions, 5, **{'x/j': 0.5})
     update(positions, 3, **{'x/j': 0.25, 'y/j': 0.25})
     assert values_of(positions) == {'x/j': 0.5, 'y/j': 0.25}
@@ -251,15 +253,14 @@ def test_an_older_position_does_not_count():
 
 
 def test_a_follower_does_not_follow_an_older_position():
-    positions = positions_of(model_file(LINKS + joint(
-        ENDS + '<axis><xyz>0 0 1</xyz></axis>', 'j', 'revolute') + following(), version='1.11'))
+    positions = positions_in_model(LEADER + following())
     update(positions, 5, j=2.0)
     update(positions, 3, j=0.0)
     assert values_of(positions) == {'j': 2.0, 'k': 4.0}
 
 
 def test_stamps_can_be_ignored_or_forgotten():
-    positions = positions_of(model_file(LINKS + joint(ENDS, 'j', 'revolute')))
+    positions = positions_in_model()
     positions.forget_stamps()
     assert positions.reported_count == 0
     update(positions, 5, j=0.5)
@@ -271,7 +272,7 @@ def test_stamps_can_be_ignored_or_forgotten():
 
 
 def test_positions_of_one_time_stay_together():
-    positions = positions_of(model_file(LINKS + joint(ENDS, 'j', 'revolute')))
+    positions = positions_in_model()
     before = positions.values
     update(positions, j=0.5)
     assert before.tolist() == [0.0]
@@ -354,7 +355,7 @@ def test_a_model_does_not_take_over_the_position_of_a_joint():
 
 
 def test_the_model_of_a_file_that_was_spawned_has_a_scope():
-    scene = load_text(model_file(LINKS + joint(ENDS, 'j', 'revolute')))
+    scene = load_text(model_file(ONE_JOINT))
     motion = tf_tree_from_scene(scene, TfOptions(use_joint_states=True)).moving.motion
     assert JointPositions(scene, motion).models == ()
     assert JointPositions(scene, motion, is_spawned=True).models == ('m',)

@@ -10,7 +10,7 @@ pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import given
 from hypothesis import strategies as st
 
-import sdf_pose_bridge
+from sdf_pose_bridge import load_text
 from sdf_pose_bridge.tf.parents import tf_parents_from_scene
 
 LINKS = '<link name="a"/><link name="b"/><link name="c"/>'
@@ -18,7 +18,7 @@ LINKS = '<link name="a"/><link name="b"/><link name="c"/>'
 
 def parents_of(text):
     """Return the name of each element's parent by its own name, and the whole answer."""
-    scene = sdf_pose_bridge.load_text(text)
+    scene = load_text(text)
     answer = tf_parents_from_scene(scene)
     assert len(answer.parents) == len(scene.names)
     return {
@@ -28,7 +28,7 @@ def parents_of(text):
 
 
 def loops_of(text):
-    scene = sdf_pose_bridge.load_text(text)
+    scene = load_text(text)
     return [scene.names[joint.element] for joint in tf_parents_from_scene(scene).loop_joints]
 
 
@@ -61,9 +61,16 @@ def test_the_parent_of_a_sensor_of_a_joint_is_the_child_link():
 
 
 def test_the_parent_of_a_sensor_of_a_joint_to_a_frame_is_the_link():
-    text = model_file(
-        LINKS + '<frame name="f" attached_to="b"/>'
-        + fixed_joint('j', 'a', 'f', element('sensor', 's')))
+    text = model_file("""
+        <link name="a"/>
+        <link name="b"/>
+        <link name="c"/>
+        <frame name="f" attached_to="b"/>
+        <joint name="j" type="fixed">
+          <parent>a</parent>
+          <child>f</child>
+          <sensor name="s" type="camera"/>
+        </joint>""")
     assert parents_of(text)['m::j::s'] == 'm::b'
 
 
@@ -126,7 +133,10 @@ PARENTS = {
         model_file(LINKS + TWO_IN_NESTED + joints(('b', 'n::k2'))),
         {'m::n::k2': 'm::b', 'm::n': 'm::n::k', 'm::n::k': 'm::a'}),
     'lights and actors of a world: the world': (
-        world_file(model('m', LINKS) + posed('light', 'sun', '', 'm') + element('actor', 'man')),
+        world_file("""
+            <model name="m"><link name="a"/><link name="b"/><link name="c"/></model>
+            <light name="sun" type="point"><pose relative_to="m"/></light>
+            <actor name="man"/>"""),
         {'sun': 'world', 'man': 'world'}),
     'a static model without links': (
         world_file(model('m', '<static>1</static><frame name="f"/>')
@@ -165,7 +175,7 @@ def test_parents(text, expected):
 
 
 def test_the_bodies_that_a_joint_connects_to_their_parents():
-    scene = sdf_pose_bridge.load_text(world_file(
+    scene = load_text(world_file(
         model('free', LINKS) + model('bolted', LINKS + joints(('world', 'a'), ('a', 'b')))
         + model('fixed', '<static>1</static><link name="l"/>') + '<frame name="f"/>'))
     assert [scene.names[body] for body in tf_parents_from_scene(scene).joints] == [
@@ -222,9 +232,16 @@ A, B = model('a', LINKS), model('b', LINKS)
     (A + B, '', ['a', 'b']),
     (A.replace('<link', '<static>true</static><link', 1) + B, '', ['b']),
     (A + B + fixed_joint('j', 'world', 'a'), '', ['b']),
-    (A + B + fixed_joint('j', 'a', 'b'), '', ['a']),
+    (A + B + '<joint name="j" type="fixed"><parent>a</parent><child>b</child></joint>', '', ['a']),
     (A + model('b', LINKS + model('n', LINKS)), '', ['a', 'b', 'b::n']),
-    (model('b', LINKS + model('n', LINKS) + fixed_joint('j', 'a', 'n::a')), '', ['b']),
+    ("""
+        <model name="b">
+          <link name="a"/>
+          <link name="b"/>
+          <link name="c"/>
+          <model name="n"><link name="a"/><link name="b"/><link name="c"/></model>
+          <joint name="j" type="fixed"><parent>a</parent><child>n::a</child></joint>
+        </model>""", '', ['b']),
     (model('b', model('n', LINKS)), '', ['b']),
     (A + model('ab', LINKS + model('n', LINKS)), 'ab::n', ['ab', 'ab::n']),
     (A + model('ab', LINKS + model('n', LINKS)), 'a', ['a']),
@@ -232,7 +249,7 @@ A, B = model('a', LINKS), model('b', LINKS)
 ], ids=['all', 'static', 'joined to the world', 'joined to another', 'nested', 'joined nested',
         'canonical link in a nested one', 'only a nested one', 'only one', 'in another world'])
 def test_models_move_freely_unless_they_are_static_or_joined(content, only_model, expected):
-    scene = sdf_pose_bridge.load_text(world_file(content))
+    scene = load_text(world_file(content))
     found = tf_parents_from_scene(scene).with_free_models(
         scene, np.zeros(len(scene.names), np.bool_), only_model)
     assert [scene.names[each] for each in found.free_models.values()] == expected
@@ -240,7 +257,7 @@ def test_models_move_freely_unless_they_are_static_or_joined(content, only_model
 
 
 def test_models_in_a_model_without_a_transform_stay_in_it():
-    scene = sdf_pose_bridge.load_text(world_file(A + model('b', LINKS + model('n', LINKS))))
+    scene = load_text(world_file(A + model('b', LINKS + model('n', LINKS))))
     found = tf_parents_from_scene(scene).with_free_models(
         scene, np.array([name == 'b::a' for name in scene.names]), '')
     assert [scene.names[each] for each in found.free_models.values()] == ['a']

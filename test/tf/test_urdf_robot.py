@@ -12,7 +12,7 @@ pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from joint_trees import model_text, pose_text, POSES, POSITIONS, random_joints
-from matrices import matrix_from_pose
+from matrices import assert_close, matrix_from_pose
 from random_scenes import random_scenes
 
 from sdf_pose_bridge import Kind, load_text, scene_at_positions, SdfError, UnknownFrameError
@@ -283,8 +283,7 @@ def assert_same_frames(text, positions, joints=(), **options):
     if first in expected:
         to_root = matrix_from_pose(expected[first]) @ np.linalg.inv(places[first])
     for name, matrix in places.items():
-        np.testing.assert_allclose(
-            to_root @ matrix, matrix_from_pose(expected[name]), atol=1e-9, err_msg=name)
+        assert_close(to_root @ matrix, matrix_from_pose(expected[name]), name=name)
 
 
 @given(st.data(), st.integers(2, 5))

@@ -80,6 +80,7 @@ def test_first_error_of_an_included_file_names_the_way_there(tmp_path):
     (include('.'), 'URI_LOOKUP'),
     (include(content='<name> </name>'), 'ELEMENT_INVALID'),
     (include(content='<name>world</name>'), 'RESERVED_NAME'),
+    (include(content='<name>a::b</name>'), 'RESERVED_NAME'),
     (include(content='<static/>'), 'ELEMENT_INVALID'),
     (include(content='<pose>1 2</pose>'), 'ELEMENT_INVALID'),
     (include(content='<pose relative_to="zzz"/>'), 'POSE_RELATIVE_TO_INVALID'),
@@ -144,9 +145,11 @@ def test_directory_without_a_manifest_is_named_in_the_message(errors_in, tmp_pat
 
 
 def test_missing_file_that_is_included_twice_is_reported_once(errors_in):
-    errors = errors_in(''.join(
-        include(uri, f'<name>{name}</name>') for uri in ('none.sdf', 'model://b')
-        for name in 'ab'))
+    errors = errors_in("""
+        <include><uri>none.sdf</uri><name>a</name></include>
+        <include><uri>none.sdf</uri><name>b</name></include>
+        <include><uri>model://b</uri><name>a</name></include>
+        <include><uri>model://b</uri><name>b</name></include>""")
     assert [error.message.split(' cannot be')[0] for error in errors] == [
         '"none.sdf"', '"model://b"']
 
@@ -159,7 +162,9 @@ def test_error_in_a_file_that_is_included_twice_is_reported_once(errors_in):
 
 
 def test_different_errors_in_one_line_of_an_included_file_are_reported(errors_in):
-    links = ''.join(f'<link name="{pose}"><pose>{pose}</pose></link>' for pose in ('1 2', '3 4'))
+    links = """
+        <link name="1 2"><pose>1 2</pose></link>
+        <link name="3 4"><pose>3 4</pose></link>"""
     assert len(errors_in(include('bad.sdf'), bad=model_file(links))) == 2
 
 

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Merged models: what cannot be merged, what moves, and which references are replaced."""
 
-import numpy as np
 import pytest
 from sdf_texts import (
     assert_at,
@@ -206,9 +205,19 @@ def test_first_merged_link_can_be_the_canonical_link_of_the_parent(scene_of):
 
 
 def test_placement_frame_that_is_renamed_by_the_merge_places_its_model(scene_of):
-    scene = scene_of(
-        in_model('<link name="f"/>' + include('<pose/><placement_frame>f</placement_frame>')
-                 + '<link name="last"/>').replace('1.9', '1.6'),
+    scene = scene_of("""
+        <sdf version="1.6">
+          <model name="m">
+            <link name="base"><pose>0 0 10 0 0 0</pose></link>
+            <link name="f"/>
+            <include merge="true">
+              <uri>arm.sdf</uri>
+              <pose/>
+              <placement_frame>f</placement_frame>
+            </include>
+            <link name="last"/>
+          </model>
+        </sdf>""",
         arm=ARM.replace('1.9', '1.6'))
     assert_at(scene, 'm::f_frame', (0, 0, 0))
     assert_at(scene, f'm::{PROXY}', (0, -1, 0))
@@ -277,13 +286,22 @@ def test_merged_model_can_merge_another(scene_of):
 
 # References to the model frame
 
-MODEL_FRAME_REFERENCES = arm(
-    posed('link', 'a', '1 0 0 0 0 0', '__model__') + posed('link', 'b', '1 0 0 0 0 0')
-    + posed('link', 'c', '1 0 0 0 0 0', 'a')
-    + '<frame name="f" attached_to="__model__"><pose>1 0 0 0 0 0</pose></frame>'
-    + '<frame name="g" attached_to="a"><pose relative_to="__model__">1 0 0 0 0 0</pose></frame>'
-    + '<model name="n"><pose relative_to="__model__">1 0 0 0 0 0</pose><link name="l"/></model>'
-    + fixed_joint('j', '__model__', 'b', '<pose relative_to="__model__">1 0 0 0 0 0</pose>'))
+MODEL_FRAME_REFERENCES = """
+    <sdf version="1.9">
+      <model name="arm">
+        <link name="a"><pose relative_to="__model__">1 0 0 0 0 0</pose></link>
+        <link name="b"><pose>1 0 0 0 0 0</pose></link>
+        <link name="c"><pose relative_to="a">1 0 0 0 0 0</pose></link>
+        <frame name="f" attached_to="__model__"><pose>1 0 0 0 0 0</pose></frame>
+        <frame name="g" attached_to="a"><pose relative_to="__model__">1 0 0 0 0 0</pose></frame>
+        <model name="n"><pose relative_to="__model__">1 0 0 0 0 0</pose><link name="l"/></model>
+        <joint name="j" type="fixed">
+          <parent>__model__</parent>
+          <child>b</child>
+          <pose relative_to="__model__">1 0 0 0 0 0</pose>
+        </joint>
+      </model>
+    </sdf>"""
 
 
 @pytest.mark.parametrize(('name', 'x'), [
@@ -335,5 +353,4 @@ def test_merged_poses_are_those_of_the_model_by_itself(scene_of, tmp_path):
     scene = scene_of(in_model(include()), arm=text)
     alone = load(tmp_path / 'arm.sdf')
     for name in ('a', 'b', 'j'):
-        np.testing.assert_allclose(
-            scene.pose(f'm::{name}'), alone.pose(f'arm::{name}'), rtol=0, atol=1e-12)
+        assert_at(scene, f'm::{name}', alone.pose(f'arm::{name}'))
