@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
+import json
 from pathlib import Path
 import sys
 from xml.sax.saxutils import escape, quoteattr
@@ -95,10 +96,5 @@ def _lines(bridged: BridgedTopic) -> Iterator[str]:
 
 
 def _yaml_from_value(value: object) -> str:
-    if isinstance(value, list):
-        return f'[{", ".join(map(_yaml_from_value, value))}]'
-    if isinstance(value, bool):
-        return str(value).lower()
-    # YAML has the escapes of Python in double quotes.
-    escaped = str(value).encode('unicode_escape').decode().replace('"', '\\"')
-    return f'"{escaped}"'
+    # YAML has the escapes of JSON and of Python in double quotes.
+    return printable(json.dumps(value, ensure_ascii=False))
