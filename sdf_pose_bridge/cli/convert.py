@@ -182,8 +182,7 @@ class _Conversion:
         """Return, for each pose or rotation, a line for each format, with its name if several."""
         values, targets = np.array(rows), self._targets(source)
         poses = poses_from_rows(values, source)
-        if doubt := source.doubt(values):
-            self._tell(doubt.question('--'))
+        self._tell(source.doubt(values, dashes='--'))
         for _, other in self._factors:
             if bool(other.position) != bool(source.position):
                 msg = f'{source.name} cannot be multiplied with {other.name}: one is a rotation'
@@ -220,9 +219,7 @@ class _Conversion:
             reader, words = PoseReader(words[0], no_units), words[1:]
         typed = reader.read(' '.join(words))
         pose = Pose(*poses_from_rows([typed.numbers], typed.format)[0].tolist())
-        self._tell(*typed.notes)
-        if doubt := typed.format.doubt(typed.numbers):
-            self._tell(doubt.question('--'))
+        self._tell(*typed.notes, typed.format.doubt(typed.numbers, dashes='--'))
         return (pose_inverse(pose) if option == '--times-inverse' else pose), typed.format
 
     def _product(self, poses: Floats) -> Floats:
@@ -257,7 +254,7 @@ class _Conversion:
                 'together are the rotation')
 
     def _tell(self, *sentences: str) -> None:
-        for sentence in sentences:
+        for sentence in filter(None, sentences):
             if sentence not in self._told:
                 self._told.add(sentence)
                 print_message(self._options.command, sentence)

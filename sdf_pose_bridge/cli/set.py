@@ -16,7 +16,7 @@ from sdf_pose_bridge.cli.given_poses import (
     poses_from_rows,
 )
 from sdf_pose_bridge.cli.loading import pose_lookup, scene_from_file, scene_of, STANDARD_INPUT
-from sdf_pose_bridge.cli.printing import CommandError, discard_output, print_message
+from sdf_pose_bridge.cli.printing import CommandError, print_message
 from sdf_pose_bridge.geometry.pose_texts import FORMATS
 from sdf_pose_bridge.geometry.poses import Pose, pose_product
 from sdf_pose_bridge.names import listed, printable, scoped_name
@@ -75,9 +75,10 @@ def run(options: argparse.Namespace) -> int:
     for note in notes:
         print_message(options.command, note)
     given = Pose(*poses_from_rows([numbers], source)[0].tolist())
-    doubt = source.doubt(numbers, is_written=True)
+    doubt = source.doubt(numbers, is_written=True, dashes='--')
     if doubt and not options.force:
-        raise CommandError(doubt.question('--', '--force writes them as they are'))
+        msg = f'{doubt} (--force writes them as they are)'
+        raise CommandError(msg)
     scene = scene_of(options.files[0], options)
 
     def measured(scene: Scene, element: int) -> Pose:
@@ -98,22 +99,15 @@ def run(options: argparse.Namespace) -> int:
             pose_lookup(change.scene).pose(part, options.relative_to).pose, asked):
         msg = f'"{part}" does not move with "{printable(own_name)}"'
         raise CommandError(msg)
+    moved = [name for name in names_of_moved(scene, change.scene) if name != own_name]
+    if change.file.path != scene.files[0]:
+        print(f'the pose is in {printable(change.file.path)}')
+    print(change.file.diff or (
+        f'"{printable(own_name)}" has this pose already; the file stays as it is\n'), end='')
+    if moved:
+        print(f'moved with it: {listed([*map(printable, moved)], _MOST_MOVED)}')
+    # If the change cannot be printed, nothing is written.
+    sys.stdout.flush()
     if not options.dry_run:
         change.file.write()
-    moved = [name for name in names_of_moved(scene, change.scene) if name != own_name]
-    path = printable(change.file.path)
-    try:
-        if change.file.path != scene.files[0]:
-            print(f'the pose is in {path}')
-        print(change.file.diff or (
-            f'"{printable(own_name)}" has this pose already; the file stays as it is\n'), end='')
-        if moved:
-            print(f'moved with it: {listed([*map(printable, moved)], _MOST_MOVED)}')
-        sys.stdout.flush()
-    except OSError as error:
-        if options.dry_run:
-            raise
-        discard_output()
-        print(f'sdf_pose set: {path} has the new pose, but the change cannot be printed: '
-              f'{(error.strerror or str(error)).lower()}', file=sys.stderr)
     return 0

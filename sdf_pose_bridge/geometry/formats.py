@@ -17,7 +17,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 import difflib
 import re
-from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -36,7 +35,6 @@ from sdf_pose_bridge.geometry.sequences import AngleSequence, XYZ, ZYX, ZYZ
 from sdf_pose_bridge.geometry.units import (
     are_unlikely,
     DEGREES,
-    Doubt,
     METRES,
     MILLIMETRES,
     RADIANS,
@@ -143,13 +141,14 @@ class Format(NamedTuple):
         return rows
 
     def doubt(
-        self, values: Sequence[float] | Floats, *, is_written: bool = False,
-    ) -> Doubt | None:
+        self, values: Sequence[float] | Floats, *, is_written: bool = False, dashes: str = '',
+    ) -> str:
         """
-        Return why rows probably mean something else than this format says, or None.
+        Ask about rows that probably mean something else than this format says; empty for others.
 
         :param values: finite numbers, shape (n * row_length,) or (n, row_length).
         :param is_written: whether a file gets them, so that quaternions must be of unit length.
+        :param dashes: before the names of units that are options of a command.
         """
         rows = np.reshape(values, (-1, self.row_length))
         numbers = rows[:, sorted(self.columns)]
@@ -160,13 +159,14 @@ class Format(NamedTuple):
         ):
             if unit and (unlikely := part[are_unlikely(part, unit)]).size:
                 reasons.append(clause.format(_shown(unlikely[0]), unit.text))
-                likely_units.append(UNLIKELY[unit][-1])
+                likely_units.append(dashes + UNLIKELY[unit][-1].text)
         if is_written and self.rotation is _QUATERNION:
             norms = np.linalg.norm(numbers, axis=1)
             far = np.flatnonzero(np.abs(norms - 1.0) > NORM_TOLERANCE).tolist()
             reasons += [f'the quaternion {_shown(numbers[row])} has the length {norms[row]:g},'
                         ' not 1' for row in far[:1]]
-        return Doubt(' and '.join(reasons), tuple(likely_units)) if reasons else None
+        question = f'; did you mean {" ".join(likely_units)}?' if likely_units else ''
+        return ' and '.join(reasons) + question
 
 
 def converted_poses(
@@ -336,10 +336,6 @@ def _pose(name: str, length: Unit, rotation: Format, *synonyms: str) -> Format:
         columns=tuple(3 + column for column in rotation.columns), synonyms=synonyms)
 
 
-def _registry(*formats: Format) -> Mapping[str, Format]:
-    return MappingProxyType({entry.name: entry for entry in formats})
-
-
 _RPY = Format('rpy', 'roll pitch yaw in {angle}', ZYX, (2, 1, 0), RADIANS)
 _YPR = Format('ypr', 'yaw pitch roll in {angle}', ZYX, (0, 1, 2), RADIANS)
 _XYZW = Format('quaternion', 'quaternion x y z w of any norm but 0', _QUATERNION, (0, 1, 2, 3))
@@ -349,7 +345,7 @@ _VECTOR = Format(
     'rotation_vector', 'rotation vector (axis times angle) in {angle}', _ROTATION_VECTOR,
     (0, 1, 2), RADIANS)
 
-ROTATION_FORMATS = _registry(
+ROTATION_FORMATS: Mapping[str, Format] = {each.name: each for each in (
     _RPY._replace(synonyms=('rpy_radians',)),
     _RPY._replace(name='rpy_degrees', angle=DEGREES, synonyms=('rpy_deg',)),
     _YPR._replace(synonyms=('ypr_radians',)),
@@ -360,10 +356,10 @@ ROTATION_FORMATS = _registry(
     _VECTOR._replace(synonyms=('rotvec', 'axis_angle')),
     _VECTOR._replace(
         name='rotation_vector_degrees', angle=DEGREES, synonyms=('rotvec_degrees',)),
-)
+)}
 """All formats of rotations by name; their common representation has shape (n, 4)."""
 
-POSE_FORMATS = _registry(
+POSE_FORMATS: Mapping[str, Format] = {each.name: each for each in (
     _pose('sdf_rpy', METRES, _RPY, 'sdf_rpy_radians'),
     _pose('sdf_rpy_degrees', METRES, _RPY._replace(angle=DEGREES), 'sdf_rpy_deg'),
     _pose('sdf_quat_xyzw', METRES, _XYZW, 'sdf_quat'),
@@ -391,5 +387,5 @@ POSE_FORMATS = _registry(
     _pose('denso', MILLIMETRES, _fixed_xyz('RX RY RZ')),
     _pose('epson_uvw', MILLIMETRES, _turned('U V W', ZYX), 'epson'),
     _pose('ufactory', MILLIMETRES, _fixed_xyz('roll pitch yaw'), 'xarm'),
-)
+)}
 """All formats of poses by name; their common representation has shape (n, 7)."""

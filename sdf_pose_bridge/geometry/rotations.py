@@ -22,8 +22,8 @@ rotation vector of 1e70 or longer, and a matrix that is not orthonormal or has d
 
 At gimbal lock, where pitch is a right angle, only roll - yaw (pitch up) or roll + yaw (pitch down)
 is defined: yaw is then 0 and roll has all of it, as in gz-math. Near lock each angle alone is less
-certain, but together they represent the given rotation. :func:`near_gimbal_lock` returns whether
-gz-math would set yaw to 0, which changes the rotation by up to 4.5e-8 radians.
+certain, but together they represent the given rotation. gz-math sets yaw to 0 there, which changes
+the rotation by up to 4.5e-8 radians.
 
 The rotation returned differs from the one given by at most 1.2e-15 radians, for every rotation and
 every representation.
@@ -33,10 +33,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 import math
-from typing import Any, overload, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sdf_pose_bridge.geometry import formulas
 from sdf_pose_bridge.geometry.formulas import (
@@ -62,10 +61,6 @@ Triple: TypeAlias = tuple[float, float, float]
 Quaternion: TypeAlias = tuple[float, float, float, float]
 Matrix: TypeAlias = tuple[Triple, Triple, Triple]
 One: TypeAlias = Sequence[float]
-Many: TypeAlias = Floats | Sequence[Sequence[float]]
-
-LOCK_TOLERANCE = 1e-15
-"""Of gz-math: at gimbal lock the sine of pitch differs from 1 or -1 by less than this."""
 
 _GIMBAL_LOCK = 1e-31
 """
@@ -277,21 +272,3 @@ def rotation_vector_from_quaternion(xp: Any, *quat: Component) -> Any:
     sine = xp.where(is_usual, xp.sqrt(square), 1.0)
     factor = xp.where(is_usual, 2.0 * xp.arctan2(sine, w) / sine, 2.0)
     return x * factor, y * factor, z * factor
-
-
-@overload
-def near_gimbal_lock(quat_xyzw: One) -> bool: ...
-@overload
-def near_gimbal_lock(quat_xyzw: Many) -> NDArray[np.bool_]: ...
-def near_gimbal_lock(quat_xyzw: One | Many) -> bool | NDArray[np.bool_]:
-    """
-    Return whether roll and yaw alone are practically undefined.
-
-    The rule is gz-math's: the sine of pitch differs from 1 or -1 by less than 1e-15, so pitch is
-    within 4.5e-8 radians of a right angle.
-
-    :return: a bool, or an array of bool.
-    """
-    unit = canonical_quaternion(quat_xyzw)
-    x, y, z, w = unit if isinstance(unit, tuple) else np.moveaxis(unit, -1, 0)
-    return abs(abs(2.0 * (w * y - x * z)) - 1.0) < LOCK_TOLERANCE

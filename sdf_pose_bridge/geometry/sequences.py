@@ -18,10 +18,11 @@ import numpy as np
 from sdf_pose_bridge.geometry.rotations import (
     canonical_quaternion,
     Floats,
-    near_gimbal_lock,
     quaternion_from_rpy,
     rpy_from_quaternion,
 )
+
+_LOCK_TOLERANCE = 1e-15
 
 
 class AngleSequence(NamedTuple):
@@ -78,8 +79,16 @@ class AngleSequence(NamedTuple):
             & (abs(self._pitch(middle, half_turn)) * (2.0 + 1e-7) <= half_turn))
 
     def near_lock(self, quats_xyzw: Floats) -> Any:
-        """Return whether the first and the last angle alone are practically undefined."""
-        return near_gimbal_lock(quats_xyzw @ self.matrix)
+        """
+        Return whether the first and the last angle alone are practically undefined.
+
+        The rule is gz-math's: the sine of pitch differs from 1 or -1 by less than 1e-15, so pitch
+        is within 4.5e-8 radians of a right angle.
+
+        :param quats_xyzw: canonical quaternions, shape (..., 4).
+        """
+        x, y, z, w = np.moveaxis(quats_xyzw @ self.matrix, -1, 0)
+        return abs(abs(2.0 * (w * y - x * z)) - 1.0) < _LOCK_TOLERANCE
 
     def _pitch(self, middle: Any, half_turn: float) -> Any:
         return self.sign * (middle - self.offset * half_turn)

@@ -88,25 +88,6 @@ class Units(NamedTuple):
                 for value, unit in zip(values, self.of_pose, strict=True)]
 
 
-class Doubt(NamedTuple):
-    """Numbers probably mean something else than their format says."""
-
-    reason: str
-    """A clause with the numbers, and the unit or the rule of the format."""
-    likely_units: tuple[Unit, ...] = ()
-
-    def question(self, prefix: str = '', cure: str = '') -> str:
-        """
-        Return a question for people.
-
-        :param prefix: dashes, if the units are named as options of a command.
-        :param cure: a clause about accepting the numbers as they are.
-        """
-        units = ' '.join(prefix + unit.text for unit in self.likely_units)
-        question = f'; did you mean {units}?' if units else ';' if cure else ''
-        return f'{self.reason}{question} {cure}'.rstrip()
-
-
 def are_unlikely(rows: Floats, unit: Unit) -> Any:
     """Return for each position or rotation, shape (n, count), if it is hardly in this unit."""
     lower, upper, _ = UNLIKELY[unit]

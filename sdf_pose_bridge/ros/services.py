@@ -31,7 +31,8 @@ from sdf_pose_bridge.geometry.formats import (
     ROTATION_FORMATS,
 )
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.rotations import near_gimbal_lock, RotationError
+from sdf_pose_bridge.geometry.rotations import RotationError
+from sdf_pose_bridge.geometry.sequences import ZYX
 from sdf_pose_bridge.ros.background import Worker
 from sdf_pose_bridge.ros.log_lines import text_about_defect
 from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadedScene
@@ -114,12 +115,11 @@ def answer_to_convert_rotation(
         msg = (f'given is {request.given} ({name}), but {other} is {ignored}; set given to'
                f' {1 - request.given} ({other}), or leave that out')
         raise RotationError(msg)
-    quat = converted_rotations(values, source, 'quaternion').tolist()
+    quat = converted_rotations(values, source, 'quaternion')
     _fill(response.rpy, converted_rotations(values, source, angles).tolist())
-    _fill(response.quaternion, quat)
-    response.gimbal_lock = near_gimbal_lock(quat)
-    if doubt := ROTATION_FORMATS[source].doubt(values):
-        response.message = doubt.question()
+    _fill(response.quaternion, quat.tolist())
+    response.gimbal_lock = bool(ZYX.near_lock(quat))
+    response.message = ROTATION_FORMATS[source].doubt(values)
 
 
 def answer_to_convert_poses(
@@ -132,8 +132,7 @@ def answer_to_convert_poses(
     converted = converted_poses(
         np.asarray(request.values), request.from_format, request.to_format)
     source = format_from_name(request.from_format, POSE_FORMATS)
-    if doubt := source.doubt(request.values):
-        response.message = doubt.question()
+    response.message = source.doubt(request.values)
     # The message would check every element of anything but an array.array.
     response.values = array.array('d', converted.tobytes())
 
@@ -183,7 +182,7 @@ def _pose_from_request(request: SetPose.Request, loaded: LoadedScene) -> Pose:
     except PoseFormatError as error:
         raise PoseNotSetError(str(error), place) from error
     if doubt := POSE_FORMATS['sdf_quat_xyzw'].doubt(numbers, is_written=True):
-        msg = doubt.question(cure='"sdf_pose set --force" writes it')
+        msg = f'{doubt} ("sdf_pose set --force" writes it)'
         raise PoseNotSetError(msg, place)
     return pose
 

@@ -189,8 +189,8 @@ class PoseEdit:
         self._texts = typed
         if not pasted:
             self._shown_for = reference, pose, units
-        doubt = given.format.doubt(given.numbers, is_written=True)
-        self._set_pose(pose, *given.notes, question=doubt.question() if doubt else '')
+        question = given.format.doubt(given.numbers, is_written=True)
+        self._set_pose(pose, *given.notes, question=question)
 
     def _read_gizmo(self) -> None:
         if (pose := self._pose_of_gizmo) != self._placed:
