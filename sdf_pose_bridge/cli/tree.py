@@ -144,7 +144,7 @@ def _in_branches(
     if has_root_frame and not children.get(0) and len(children.get(-1, ())) > 1:
         # Nothing is below the root frame, as in the file of a robot that odometry places.
         children[-1].remove(0)
-    lines: list[tuple[int, str]] = []
+    found: list[Frame] = []
     # The number of frames below each line that are too deep to be printed.
     hidden: list[int] = []
     waiting = [(index, 0, '') for index in reversed(children.get(-1, ()))]
@@ -153,7 +153,8 @@ def _in_branches(
         if depth > options.depth:
             hidden[-1] += 1
         else:
-            lines.append((index, branches))
+            record, row = frames[index]
+            found.append((record, row._replace(branches=branches, is_bold=is_match[index])))
             hidden.append(0)
         # A chain of thousands of links would be indented by thousands of characters.
         indent = branches.translate(BELOW)[-_WIDEST_INDENT:]
@@ -161,11 +162,7 @@ def _in_branches(
         waiting += [
             (child, depth + 1, indent + ('└ ' if child == below[-1] else '├ '))
             for child in reversed(below)]
-    found: list[Frame] = []
-    for (index, branches), count in zip(lines, hidden, strict=True):
-        record, row = frames[index]
-        more = f'{count} more below' if count else ''
-        note = ', '.join(filter(None, (record['note'], more)))
-        found.append(
-            (record, row._replace(note=note, branches=branches, is_bold=is_match[index])))
-    return found
+    return [
+        (record, row._replace(note=', '.join(filter(None, (
+            record['note'], f'{count} more below' if count else '')))))
+        for (record, row), count in zip(found, hidden, strict=True)]
