@@ -3,12 +3,11 @@
 """Modules, tests and pages fit together as docs/architecture.md describes."""
 
 import ast
-from pathlib import Path
 import re
 
+from folders import ROOT
 import pytest
 
-ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / 'sdf_pose_bridge'
 TESTS = ROOT / 'test'
 MODULES = sorted(

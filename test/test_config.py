@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The params file in config/ has every parameter of the node with its default."""
 
-from pathlib import Path
 
+from folders import ROOT
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
@@ -14,7 +14,7 @@ import yaml
 from sdf_pose_bridge.ros.given_parameters import settings_from_node
 from sdf_pose_bridge.ros.parameters import DECLARATIONS
 
-FILE = Path(__file__).resolve().parents[1] / 'config/bridge.yaml'
+FILE = ROOT / 'config/bridge.yaml'
 DEFAULTS = {name: declaration.default for name, declaration in DECLARATIONS.items()}
 
 

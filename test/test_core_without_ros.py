@@ -10,9 +10,9 @@ import subprocess
 import sys
 
 from deadline import DEADLINE_S
+from folders import ROOT
 import pytest
 
-ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / 'sdf_pose_bridge'
 CORE = sorted(
     '.'.join(path.relative_to(PACKAGE).with_suffix('').parts) for path in PACKAGE.rglob('*.py')

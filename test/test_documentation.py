@@ -2,19 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every command and snippet of the documentation is run here, or named with the reason why not."""
 
-from pathlib import Path
 import re
 import shlex
 import shutil
 import subprocess
 import sys
 
+from folders import ROOT
 import pytest
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.cli.main import main
 
-ROOT = Path(__file__).resolve().parents[1]
 PAGES = [ROOT / 'README.md', ROOT / 'CONTRIBUTING.md', *sorted((ROOT / 'docs').glob('*.md'))]
 
 TESTED_ELSEWHERE = {

@@ -3,10 +3,10 @@
 """Each name that users type or read has its place in the page of the documentation about it."""
 
 from importlib import import_module
-from pathlib import Path
 import re
 import xml.etree.ElementTree as ET
 
+from folders import ROOT
 import pytest
 
 import sdf_pose_bridge
@@ -18,8 +18,6 @@ from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.shape_types import SHAPE_TYPES
 from sdf_pose_bridge.sdformat.specification import JOINT_TYPES
 from sdf_pose_bridge.sdformat.versions import NEWEST, OLDEST
-
-ROOT = Path(__file__).resolve().parents[1]
 
 
 def text_of(path):

@@ -11,10 +11,10 @@ import sysconfig
 
 from command_line import executable_of_workspace, skip_without
 from deadline import DEADLINE_S
+from folders import ROOT
 import mesh_texts
 import pytest
 
-ROOT = Path(__file__).resolve().parents[1]
 MESH = """<sdf version="1.9"><model name="m"><link name="l"><visual name="v"><geometry>
   <mesh><uri>a.stl</uri></mesh></geometry></visual></link></model></sdf>"""
 NOT_COPIED = shutil.ignore_patterns(

@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 import xml.etree.ElementTree as ET
 
+from folders import ROOT
 import pytest
 
 pytest.importorskip('launch_ros', reason='needs launch_ros, which is not installed')
@@ -24,7 +25,7 @@ from launch_ros.actions import Node
 from sdf_texts import world_file
 import yaml
 
-FOLDER = Path(__file__).resolve().parents[1] / 'launch'
+FOLDER = ROOT / 'launch'
 RVIZ_FILE = FOLDER.parent / 'rviz/bridge.rviz'
 VISUALS = '/sdf_pose_bridge/visuals'
 FILES = sorted(path.name for path in FOLDER.glob('*.launch.*'))

@@ -15,6 +15,7 @@ import xml.etree.ElementTree as ET
 
 from command_line import skip_without
 from deadline import DEADLINE_S
+from folders import ROOT
 import pytest
 
 import sdf_pose_bridge
@@ -22,7 +23,6 @@ from sdf_pose_bridge.cli.main import new_parser
 from sdf_pose_bridge.cli.viewer import LIBRARIES
 from sdf_pose_bridge.ros.cdr import JOINT_STATE, POSE_TYPES
 
-ROOT = Path(__file__).resolve().parents[1]
 PACKAGES = {
     'sdf_pose_bridge': ROOT,
     'sdf_pose_bridge_interfaces': ROOT / 'sdf_pose_bridge_interfaces',

@@ -4,7 +4,6 @@
 
 from importlib.util import find_spec
 import os
-from pathlib import Path
 import re
 import shutil
 import subprocess
@@ -12,13 +11,13 @@ import sys
 from urllib.parse import unquote, urlsplit
 import xml.etree.ElementTree as ET
 
+from folders import ROOT
 import pytest
 
 pytestmark = pytest.mark.skipif(
     not all(map(find_spec, ('sphinx', 'myst_parser', 'furo'))),
     reason='needs Sphinx, MyST and furo')
 
-ROOT = Path(__file__).resolve().parents[1]
 URL = 'https://example.org/a/b/'
 # What rosdoc2 0.2 runs, and a page that it adds.
 CONF_OF_ROSDOC2 = f'exec(open("{ROOT}/docs/conf.py").read())\n'

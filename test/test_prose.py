@@ -4,12 +4,11 @@
 
 import ast
 from itertools import chain
-from pathlib import Path
 import re
 
+from folders import ROOT
 import pytest
 
-ROOT = Path(__file__).resolve().parents[1]
 PAGES = [*ROOT.glob('*.md'), *ROOT.glob('docs/*.md'), ROOT / 'CHANGELOG.rst']
 MODULES = sorted(ROOT.glob('sdf_pose_bridge/**/*.py'))
 

@@ -8,11 +8,11 @@ import subprocess
 import sys
 import xml.etree.ElementTree as ET
 
+from folders import ROOT
 import pytest
 
 pytest.importorskip('catkin_pkg', reason='needs catkin_pkg')
 
-ROOT = Path(__file__).resolve().parents[1]
 INTERFACES = 'sdf_pose_bridge_interfaces'
 MANIFESTS = ('package.xml', f'{INTERFACES}/package.xml', 'examples/cpp_client/package.xml')
 CHANGELOGS = ('CHANGELOG.rst', f'{INTERFACES}/CHANGELOG.rst')

@@ -11,9 +11,9 @@ import subprocess
 import sys
 
 from deadline import DEADLINE_S
+from folders import ROOT
 import pytest
 
-ROOT = Path(__file__).resolve().parents[1]
 SHELL_TOOLS = ('bash', 'dirname', 'env', 'head')
 DISTRO = os.environ.get('ROS_DISTRO', 'jazzy')
 OTHER_DISTRO = 'kilted' if DISTRO == 'jazzy' else 'jazzy'

@@ -3,14 +3,12 @@
 """``sdf_pose diff``: the frames that changed, and the exit code."""
 
 import os
-from pathlib import Path
 import shutil
 import subprocess
 import sys
 
+from folders import ROOT
 import pytest
-
-ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.fixture(name='diff')

@@ -5,9 +5,9 @@
 import csv
 import io
 import json
-from pathlib import Path
 import re
 
+from folders import ROOT
 import pytest
 
 
@@ -16,7 +16,7 @@ import pytest
     (80, ('poses', '{cell}', '--radians')), (80, ('poses', '--mm', '{cell}')),
     (80, ('diff', '{moved}', '{cell}'))])
 def test_lines_are_as_long_as_those_of_the_terminal(on_terminal, files, columns, arguments):
-    cell = Path(__file__).resolve().parents[2] / 'examples/work_cell.sdf'
+    cell = ROOT / 'examples/work_cell.sdf'
     moved = files / 'moved.sdf'
     moved.write_text(cell.read_text().replace('<pose>-1.2 -1.5 0', '<pose>-1.2 -1.6 0'))
     text = on_terminal(columns, *(each.format(cell=cell, moved=moved) for each in arguments))

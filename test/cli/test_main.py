@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The command line as a process: wrong arguments, exit codes and closed pipes."""
 
-from pathlib import Path
 import re
 import subprocess
 import sys
@@ -10,10 +9,9 @@ import xml.etree.ElementTree as ET
 
 from command_line import COMMAND, ENVIRONMENT
 from deadline import DEADLINE_S
+from folders import ROOT
 import pytest
 from sdf_texts import model_file, write_files
-
-ROOT = Path(__file__).resolve().parents[2]
 
 
 def test_without_a_command_all_are_listed_with_a_line_each(run_main):

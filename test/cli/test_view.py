@@ -3,7 +3,6 @@
 """``sdf_pose view``: pages, and libraries that are not installed."""
 
 from importlib.metadata import version
-from pathlib import Path
 import re
 import socket
 import subprocess
@@ -11,9 +10,9 @@ import sys
 from urllib.parse import urlsplit
 import webbrowser
 
+from folders import ROOT
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
 MESH = """<sdf version="1.9"><model name="m"><link name="l"><visual name="v"><geometry>
   <mesh><uri>none.stl</uri></mesh></geometry></visual></link></model></sdf>"""
 

@@ -11,6 +11,7 @@ import subprocess
 import sys
 
 from deadline import DEADLINE_S
+from folders import ROOT
 import pytest
 from sdf_texts import element, LINK, LINK_CHILDREN, link_with, model_file, names_of, world_file
 
@@ -24,7 +25,7 @@ from sdf_pose_bridge.sdformat.grammar import (
 from sdf_pose_bridge.sdformat.specification import CHOICES
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
-PACKAGE = Path(__file__).resolve().parents[2] / 'sdf_pose_bridge'
+PACKAGE = ROOT / 'sdf_pose_bridge'
 
 
 # Definitions
