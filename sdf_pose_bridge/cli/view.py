@@ -55,8 +55,9 @@ _BROWSER_OPTIONS = (
     '--disable-component-update', '--disable-sync', '--disable-quic',
     # 1600 x 1000 pixels, so that names can be read where the picture is shown smaller.
     '--window-size=1120,700', '--force-device-scale-factor=1.4286', '--hide-scrollbars',
-    # Milliseconds without activity of the page before the picture is drawn.
-    '--virtual-time-budget=10000')
+    # Milliseconds without activity of the page before the picture is drawn. On a busy machine, the
+    # time stands still for ever unless each frame waits for all of its stages.
+    '--virtual-time-budget=10000', '--run-all-compositor-stages-before-draw')
 _ONLY_THE_SCENE = ('<style>body :not(canvas, :has(canvas)) {visibility: hidden} '
                    '.labels div {visibility: visible}</style>')
 _MOST_SECONDS = 300.0
