@@ -70,7 +70,14 @@ def pose_product(a: Pose, b: Pose) -> Pose:
 def pose_inverse(a: Pose) -> Pose:
     """Return the pose of frame A in frame B, of the pose of frame B in frame A."""
     x, y, z, qx, qy, qz, qw = a
-    return pose_product(Pose(0.0, 0.0, 0.0, -qx, -qy, -qz, qw), Pose(-x, -y, -z))
+    ux = 2.0 * (qy * z - qz * y)
+    uy = 2.0 * (qz * x - qx * z)
+    uz = 2.0 * (qx * y - qy * x)
+    return Pose(
+        -x + qw * ux - qy * uz + qz * uy,
+        -y + qw * uy - qz * ux + qx * uz,
+        -z + qw * uz - qx * uy + qy * ux,
+        -qx, -qy, -qz, qw)
 
 
 def relative_pose(reference: Pose, pose: Pose) -> Pose:
