@@ -13,6 +13,10 @@ from bridge_process import BridgeProcess, LoggedProcess
 import pytest
 from ros_domain import environment_with_domain
 
+pytest.importorskip('rclpy', reason='needs ROS 2')
+from changes import listen_to_tf, SharedBridge, wait_for_x, world
+from listener import JointPublisher, Listener, TfListener
+
 
 @contextlib.contextmanager
 def ended_later(make):
@@ -28,11 +32,6 @@ def ended_later(make):
     finally:
         for each in made:
             each.end()
-
-
-def listener_in(domain):
-    from listener import Listener
-    return Listener(domain)
 
 
 @pytest.fixture
@@ -62,7 +61,6 @@ def start_program(ros_domain):
 @pytest.fixture
 def file(request, tmp_path):
     """File with ``FILE_TEXT`` of the module, or with a small world; a test may change it."""
-    from changes import world
     path = tmp_path / 'cell.sdf'
     path.write_text(getattr(request.module, 'FILE_TEXT', world(1)), encoding='utf-8')
     return path
@@ -71,7 +69,6 @@ def file(request, tmp_path):
 @pytest.fixture(scope='module')
 def shared_bridge(start_shared_bridge, start_shared_listener, tmp_path_factory):
     """A bridge that tests of a module use one after the other."""
-    from changes import SharedBridge, world
     path = tmp_path_factory.mktemp('shared') / 'cell.sdf'
     path.write_text(world(1), encoding='utf-8')
     bridge = start_shared_bridge(sdf_file=path).wait_until_started()
@@ -87,7 +84,6 @@ def bridge(shared_bridge, file):
 @pytest.fixture
 def listener(bridge, start_listener):
     """Listens to ``/tf_static``, where the frames of that file have arrived."""
-    from changes import listen_to_tf, wait_for_x
     listener = start_listener()
     listen_to_tf(listener)
     wait_for_x(listener, 1.0)
@@ -97,7 +93,7 @@ def listener(bridge, start_listener):
 @pytest.fixture
 def start_listener(ros_domain):
     """Starts to listen from this process; ``start_listener()``."""
-    with ended_later(lambda: listener_in(ros_domain)) as start:
+    with ended_later(lambda: Listener(ros_domain)) as start:
         yield start
 
 
@@ -111,19 +107,17 @@ def start_shared_bridge(shared_ros_domain):
 @pytest.fixture(scope='module')
 def start_shared_listener(shared_ros_domain):
     """Starts a listener that all tests of a module use; ``start_shared_listener()``."""
-    with ended_later(lambda: listener_in(shared_ros_domain)) as start:
+    with ended_later(lambda: Listener(shared_ros_domain)) as start:
         yield start
 
 
 @pytest.fixture
 def joints(tf):
     """Publishes joint states; ``joints.send(positions)``."""
-    from listener import JointPublisher
     return JointPublisher(tf.listener)
 
 
 @pytest.fixture
 def tf(start_listener):
     """Listens to ``/tf``; ``tf.last`` has the last transform of each frame."""
-    from listener import TfListener
     return TfListener(start_listener())

@@ -9,8 +9,6 @@ from deadline import DEADLINE_S
 from folders import EXAMPLES
 import pytest
 
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 
 @pytest.fixture(name='ask', scope='module')
 def ask_running_bridge(start_shared_bridge):

@@ -2,10 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A bridge that reads a file which takes long."""
 
-import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from changes import (
     asked_to_reload,
     asked_to_set,
@@ -18,6 +14,7 @@ from changes import (
     world,
 )
 from diagnostic_msgs.msg import DiagnosticStatus
+import pytest
 from rcl_interfaces.msg import Parameter as ParameterMessage
 from rcl_interfaces.msg import ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters

@@ -11,8 +11,6 @@ from matrices import assert_same_pose, matrix_from_degrees
 import numpy as np
 import pytest
 
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 FILE = """\
 <sdf version="1.10">
   <world name="hall">

@@ -7,12 +7,9 @@ import os
 import re
 import signal
 
-import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from builtin_interfaces.msg import Time
 from changes import Monitor, reload
+import pytest
 from ros_domain import needs_fast_dds
 from rosgraph_msgs.msg import Clock
 from slow_file import SlowFile

@@ -2,10 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a running bridge notices, what it replaces, and what it keeps when something is wrong."""
 
-import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from bridge_process import STARTED
 from changes import (
     BRIDGE,
@@ -19,6 +15,7 @@ from changes import (
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PoseStamped, TransformStamped
 from listener import latched
+import pytest
 
 INCLUDING = """<sdf version="1.10"><world name="w">
   <include><uri>model://box</uri></include>

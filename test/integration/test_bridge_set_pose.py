@@ -4,13 +4,10 @@
 
 from math import pi
 
-import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from changes import BRIDGE, call, listen_to_tf, reason_for_refusal, wait_for_x
 from geometry_msgs.msg import PoseStamped
 from listener import JointPublisher
+import pytest
 import urdf_texts
 
 from sdf_pose_bridge import load

@@ -3,11 +3,8 @@
 """``~/visuals`` of a running bridge, received by another process."""
 
 from changes import BRIDGE, reload, replace, set_parameters
-import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from listener import latched
+import pytest
 from slow_file import SlowFile
 from visualization_msgs.msg import Marker, MarkerArray
 

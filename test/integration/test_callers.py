@@ -11,11 +11,6 @@ import time
 import pytest
 
 pytest.importorskip('hypothesis', reason='needs hypothesis')
-from hypothesis import given, settings
-from hypothesis import strategies as st
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from changes import (
     BRIDGE,
     call,
@@ -28,6 +23,8 @@ from changes import (
     world,
 )
 from deadline import wait_until
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from listener import Answer
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import (

@@ -10,8 +10,6 @@ import sys
 from folders import EXAMPLES
 import pytest
 
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 
 @pytest.fixture(scope='module')
 def cpp_client(tmp_path_factory):

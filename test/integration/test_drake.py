@@ -9,7 +9,6 @@ import sys
 
 import pytest
 
-pytest.importorskip('rclpy', reason='needs ROS 2')
 pytest.importorskip('simulation_interfaces', reason='needs simulation_interfaces')
 
 from matrices import matrix_from_pose

@@ -11,10 +11,6 @@ import signal
 import subprocess
 import sys
 
-import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from builtin_interfaces.msg import Time
 from changes import (
     asked_to_set,
@@ -32,6 +28,7 @@ from command_line import executable_of_workspace
 from deadline import DEADLINE_S
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import Point, Pose, PoseStamped
+import pytest
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from sizes import size

@@ -4,11 +4,8 @@
 
 from math import cos, isclose, sin
 
-import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from changes import BRIDGE, pose_of, reason_for_refusal, reload, replace, set_parameters
+import pytest
 
 ROBOT = """<sdf version="1.11"><model name="robot">
 <link name="base"/><link name="arm"><pose>1 0 0 0 0 0</pose></link>

@@ -5,10 +5,6 @@
 import signal
 import sys
 
-import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from builtin_interfaces.msg import Time
 from changes import (
     asked_to_reload,
@@ -24,6 +20,7 @@ from changes import (
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PoseStamped, TransformStamped
 from listener import latched
+import pytest
 from sensor_msgs.msg import JointState
 from slow_file import SlowFile
 from std_msgs.msg import Header

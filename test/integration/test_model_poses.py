@@ -6,19 +6,16 @@ import itertools
 import math
 import sys
 
-from folders import EXAMPLES
-import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from builtin_interfaces.msg import Time
 from changes import call, listen_to_tf, pose_of, reload, replace, set_parameters
+from folders import EXAMPLES
 from geometry_msgs.msg import (
     PoseStamped,
     PoseWithCovarianceStamped,
     TransformStamped,
 )
 from nav_msgs.msg import Odometry
+import pytest
 from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 from tracker import CART, stamped, Tracker, WORLD

@@ -8,15 +8,12 @@ import shutil
 import subprocess
 import sys
 
-from deadline import wait_until
-import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from ament_index_python.packages import get_package_share_directory
 from bridge_process import STARTED
 from changes import replace, world
 from command_line import executable_of_workspace
+from deadline import wait_until
+import pytest
 from ros_domain import needs_fast_dds
 from sizes import size
 

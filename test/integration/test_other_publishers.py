@@ -2,10 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bridges whose frames another process publishes, too."""
 
-import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from changes import asked_to_reload, Monitor, world
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import TransformStamped

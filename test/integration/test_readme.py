@@ -10,8 +10,6 @@ from deadline import DEADLINE_S
 from folders import ROOT
 import pytest
 
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from sdf_pose_bridge.cli.main import main
 from sdf_pose_bridge_interfaces.srv import ConvertRotation
 

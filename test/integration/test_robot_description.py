@@ -2,10 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Text instead of a file, and the topic that has it, seen by listeners in another process."""
 
-import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from changes import (
     listen_to_tf,
     reason_for_refusal,
@@ -16,6 +12,7 @@ from changes import (
     world,
 )
 from listener import latched
+import pytest
 from std_msgs.msg import String
 
 

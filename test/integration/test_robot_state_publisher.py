@@ -4,12 +4,9 @@
 
 from functools import partial
 
-import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from changes import set_parameters
 from listener import JointPublisher, latched
+import pytest
 from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 import urdf_texts as urdf

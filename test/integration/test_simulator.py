@@ -4,7 +4,6 @@
 
 import pytest
 
-pytest.importorskip('rclpy', reason='needs ROS 2')
 pytest.importorskip('simulation_interfaces', reason='needs simulation_interfaces')
 
 from changes import pose_of, reload, set_parameters

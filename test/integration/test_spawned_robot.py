@@ -7,7 +7,6 @@ import sys
 from folders import EXAMPLES
 import pytest
 
-pytest.importorskip('rclpy', reason='needs ROS 2')
 pytest.importorskip('tf2_ros', reason='needs tf2_ros, which is not installed')
 
 from sdf_pose_bridge.ros.transforms import transforms_from_parameters

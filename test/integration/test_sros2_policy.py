@@ -5,13 +5,10 @@
 from fnmatch import fnmatchcase
 from pathlib import Path
 
-from lxml import etree
-import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from ament_index_python.packages import get_package_share_directory
 from changes import BRIDGE, world
+from lxml import etree
+import pytest
 
 
 @pytest.fixture(scope='module')

@@ -12,7 +12,6 @@ from folders import EXAMPLES
 from matrices import assert_same_pose, matrix_from_pose
 import pytest
 
-pytest.importorskip('rclpy', reason='needs ROS 2')
 pytest.importorskip('tf2_ros', reason='needs tf2_ros, which is not installed')
 
 from rclpy.time import Time

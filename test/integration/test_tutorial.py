@@ -61,7 +61,6 @@ def test_steps_without_ros(steps, folder, capsys, monkeypatch):
 
 
 def test_pose_on_its_topic(steps, folder, start_bridge, start_listener):
-    pytest.importorskip('rclpy', reason='needs ROS 2')
     for step in steps:
         if step['kind'] == '{code-block} xml':
             write(step)

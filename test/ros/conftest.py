@@ -7,11 +7,15 @@ from concurrent.futures import ThreadPoolExecutor
 from deadline import DEADLINE_S
 import pytest
 
+pytest.importorskip('rclpy', reason='needs ROS 2')
+from rclpy.executors import SingleThreadedExecutor
+
+from sdf_pose_bridge.ros.scene_reader import SceneReader
+
 
 @pytest.fixture
 def make_executor(make_node):
     """Makes executors with nodes; ``make_executor(node, ...)``."""
-    from rclpy.executors import SingleThreadedExecutor
     executors = []
 
     def make(*nodes):
@@ -59,7 +63,6 @@ def beside():
 @pytest.fixture(scope='session')
 def reader():
     """Return a reader of files."""
-    from sdf_pose_bridge.ros.scene_reader import SceneReader
     found = SceneReader()
     yield found
     found.close()

@@ -8,8 +8,6 @@ import threading
 from deadline import DEADLINE_S, wait_until
 import pytest
 
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from sdf_pose_bridge.ros.background import Periodic, result_from_executor, Worker
 
 

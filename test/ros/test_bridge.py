@@ -24,7 +24,6 @@ def run_bridge_without(module):
 
 
 def test_without_the_interfaces_it_says_what_to_type():
-    pytest.importorskip('rclpy', reason='needs ROS 2')
     result = run_bridge_without('sdf_pose_bridge_interfaces')
     assert result.returncode == 1
     assert LINK_COMMAND in result.stderr

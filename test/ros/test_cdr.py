@@ -5,8 +5,12 @@
 import importlib
 import struct
 
+from geometry_msgs.msg import PoseStamped, TransformStamped
 import numpy as np
 import pytest
+from rclpy.serialization import deserialize_message, serialize_message
+from sensor_msgs.msg import JointState
+from tf2_msgs.msg import TFMessage
 
 pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import given
@@ -52,8 +56,6 @@ def stamped_messages(ids, numbers, stamps=STAMP):
 
 def assert_read_by_rclpy(data, message):
     """Check that bytes are those of a message."""
-    pytest.importorskip('rclpy', reason='needs ROS 2')
-    from rclpy.serialization import deserialize_message, serialize_message
     assert deserialize_message(data, type(message)) == message
     assert len(data) == len(serialize_message(message))
 
@@ -65,7 +67,6 @@ def stamped(message, stamp, frame_id):
 
 
 def transform_message(row, stamp):
-    from geometry_msgs.msg import TransformStamped
     parent_id, child_id, numbers = row
     message = stamped(TransformStamped(child_frame_id=child_id), stamp, parent_id)
     xyz, quat = message.transform.translation, message.transform.rotation
@@ -74,7 +75,6 @@ def transform_message(row, stamp):
 
 
 def tf_message_object(rows, stamp):
-    from tf2_msgs.msg import TFMessage
     return TFMessage(transforms=[transform_message(row, stamp) for row in rows])
 
 
@@ -91,7 +91,6 @@ def test_transforms_are_read_by_rclpy(rows, stamp):
 
 @given(rows=ROWS, stamp=STAMPS)
 def test_poses_are_read_by_rclpy(rows, stamp):
-    from geometry_msgs.msg import PoseStamped
     (frame_ids, _), numbers = columns(rows)
     ours = stamped_messages([frame_ids], numbers, stamp)
     for data, (frame_id, _, values) in zip(ours, rows, strict=True):
@@ -150,8 +149,6 @@ def test_poses_can_be_replaced(rows):
 
 def joint_state(names, positions, *, frame_id='', sec=0, nanosec=0, velocities=()):
     pytest.importorskip('rclpy', reason='needs ROS 2')
-    from rclpy.serialization import serialize_message
-    from sensor_msgs.msg import JointState
     made = JointState(name=names, position=positions, velocity=velocities)
     made.header.frame_id = frame_id
     made.header.stamp.sec, made.header.stamp.nanosec = sec, nanosec
@@ -229,8 +226,6 @@ POSE = (1.0, 2.0, 3.0, 0.5, -0.5, 0.5, -0.5)
 def pose_message(type_name, frame_id, child='', pose=POSE, sec=7):
     """Return a serialized message with one pose, or with two equal ones, and the first of them."""
     pytest.importorskip('rclpy', reason='needs ROS 2')
-    from geometry_msgs.msg import TransformStamped
-    from rclpy.serialization import serialize_message
     package, _, name = type_name.split('/')
     one = message = getattr(importlib.import_module(f'{package}.msg'), name)()
     if hasattr(message, 'transforms'):

@@ -2,11 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What diagnostics say of a state: its level, its sentence and its values."""
 
-import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from diagnostic_msgs.msg import DiagnosticStatus
+import pytest
 
 from sdf_pose_bridge.ros.diagnostics import Diagnostics, status_from_scene
 from sdf_pose_bridge.ros.given_parameters import settings_from_node

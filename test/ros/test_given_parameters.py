@@ -6,9 +6,6 @@ from pathlib import Path
 import shlex
 
 import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from rcl_interfaces.msg import SetParametersResult
 from rcl_interfaces.srv import (
     DescribeParameters,

@@ -6,13 +6,10 @@ import concurrent.futures
 import math
 import threading
 
-from deadline import DEADLINE_S, spin_until, wait_until
-import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from builtin_interfaces.msg import Time
+from deadline import DEADLINE_S, spin_until, wait_until
 from geometry_msgs.msg import TransformStamped
+import pytest
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile

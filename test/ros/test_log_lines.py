@@ -8,9 +8,6 @@ from pathlib import Path
 import re
 
 import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from rclpy.logging import get_logger
 from sdf_texts import fixed_joint, joint, model_file, world_file
 from tf_checks import tree_of

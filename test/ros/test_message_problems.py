@@ -3,12 +3,9 @@
 """Publishers of one joint or model that send at once."""
 
 from deadline import wait_until
-import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from geometry_msgs.msg import PoseStamped
 from moving_models import Models, TURNED
+import pytest
 
 from sdf_pose_bridge.ros.cdr import StampedPose
 from sdf_pose_bridge.ros.message_problems import MessageProblems

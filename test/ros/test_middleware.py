@@ -8,8 +8,6 @@ import xml.etree.ElementTree as ET
 from folders import ROOT
 import pytest
 
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from sdf_pose_bridge.ros import middleware
 from sdf_pose_bridge.ros.middleware import Profile, PROFILES, use_profile
 

@@ -4,13 +4,10 @@
 
 import math
 
-import numpy as np
-import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from geometry_msgs.msg import PoseStamped
 from moving_models import Models, TURNED
+import numpy as np
+import pytest
 from rclpy.serialization import serialize_message
 
 from sdf_pose_bridge.errors import JointPositionError

@@ -5,11 +5,8 @@
 import time
 
 from deadline import wait_until
-import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from geometry_msgs.msg import TransformStamped
+import pytest
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from tf2_msgs.msg import TFMessage
 

@@ -4,8 +4,6 @@
 
 import pytest
 
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from sdf_pose_bridge.ros.given_parameters import settings_from_node
 from sdf_pose_bridge.ros.parameters import DECLARATIONS
 from sdf_pose_bridge.ros.process import PROGRAMS, ROBOT_STATE_PUBLISHER

@@ -5,12 +5,9 @@
 import threading
 
 from deadline import wait_until
+from geometry_msgs.msg import PoseStamped, TransformStamped
 import numpy as np
 import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
-from geometry_msgs.msg import PoseStamped, TransformStamped
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.qos import (
     DurabilityPolicy,

@@ -3,11 +3,8 @@
 """Publishers of a real node: which are made, shared, kept and destroyed."""
 
 from deadline import spin_until, wait_until
-import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from geometry_msgs.msg import PoseStamped
+import pytest
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import String
 

@@ -6,13 +6,10 @@ import array
 import math
 import threading
 
-import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from deadline import DEADLINE_S, spin_until
 from geometry_msgs.msg import PoseStamped
 import numpy as np
+import pytest
 from rclpy.clock import Clock
 from rclpy.logging import get_logger
 from rclpy.time import Time

@@ -7,8 +7,6 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from sdf_pose_bridge.ros import setting_rules as rules
 from sdf_pose_bridge.ros.parameters import DECLARATIONS
 from sdf_pose_bridge.sdformat.grammar import Kind

@@ -8,7 +8,6 @@ from types import SimpleNamespace
 from deadline import spin_until
 import pytest
 
-pytest.importorskip('rclpy', reason='needs ROS 2')
 pytest.importorskip('simulation_interfaces', reason='needs simulation_interfaces')
 
 from moving_models import Models

@@ -2,11 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which of several messages counts, and what it moves."""
 
-import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from moving_models import Models
+import pytest
 
 
 @pytest.fixture(name='models')

@@ -2,10 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The line about joints that are not reported."""
 
-import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from sdf_pose_bridge.ros.state_report import StateReport
 
 

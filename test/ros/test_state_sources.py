@@ -2,14 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The topics that a node subscribes to, and when."""
 
-
 from deadline import wait_until
 from geometry_msgs.msg import PointStamped, PoseStamped
-import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from nav_msgs.msg import Odometry
+import pytest
 import rclpy
 from rclpy.context import Context
 from sdf_texts import world_file

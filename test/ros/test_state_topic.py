@@ -2,13 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is read of messages on one topic of several, and what their names mean."""
 
-
+from builtin_interfaces.msg import Time
 from deadline import wait_until
 import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
-from builtin_interfaces.msg import Time
 from rclpy.serialization import serialize_message
 from sdf_texts import joint, world_file
 from sensor_msgs.msg import JointState

@@ -5,13 +5,13 @@
 import re
 
 import pytest
+from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
+from rclpy.validate_full_topic_name import validate_full_topic_name
+from rclpy.validate_topic_name import validate_topic_name
 
 pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import given
 from hypothesis import strategies as st
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from sdf_texts import joint, model_file, world_file
 
 from sdf_pose_bridge.ros import topic_names
@@ -83,9 +83,6 @@ def test_the_documented_rule(frame_id, name):
 
 @given(ANY_TEXT)
 def test_rclpy_takes_every_name_and_shows_it(frame_id):
-    from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
-    from rclpy.validate_full_topic_name import validate_full_topic_name
-    from rclpy.validate_topic_name import validate_topic_name
     name = topic_name_from_frame_id(frame_id)
     assert validate_topic_name(f'~/poses/{name}')
     assert validate_full_topic_name(f'/robot_1/sdf_pose_bridge/poses/{name}')

@@ -2,11 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Transforms of a file as messages, without the node."""
 
-
 import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from sdf_texts import model_file
 
 from sdf_pose_bridge import SdfError

@@ -5,10 +5,6 @@
 import math
 
 from deadline import spin_until
-import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from visualization_msgs.msg import Marker, MarkerArray
 

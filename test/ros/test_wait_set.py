@@ -6,9 +6,6 @@ import math
 import threading
 
 import pytest
-
-pytest.importorskip('rclpy', reason='needs ROS 2')
-
 from rclpy.exceptions import InvalidHandle
 from std_msgs.msg import String
 
