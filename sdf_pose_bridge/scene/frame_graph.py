@@ -91,7 +91,6 @@ class _Builder:
         self._elements = elements
         self._problems = problems
         self._scopes = NameScopes(elements, problems)
-        self._reported_cycles: set[frozenset[int]] = set()
         self._unresolved: dict[int, str] = {}
         """Unresolved elements, and for each the URI of the missing include that causes it."""
 
@@ -100,8 +99,8 @@ class _Builder:
         joints = {joint: self._joint_ends(joint) for joint in elements.joints}
         canonical = self._canonical_pointers()
         attachments = self._attachments(joints, canonical)
-        references = default_references(elements.kinds, elements.parents, attachments)
         self._break_cycles(attachments, AttachedToCycleError, 'attached to')
+        references = default_references(elements.kinds, elements.parents, attachments)
         bodies = ends_from_pointers(attachments)
         bodies[(elements.parents >= 0) & ~IS_FRAME_KIND[elements.kinds]] = NO_ELEMENT
         checks = JointChecks(elements, self._scopes, bodies, self._problems)
@@ -155,12 +154,10 @@ class _Builder:
         pointers: dict[int, int] = {}
         for model in sorted(elements.models, reverse=True):  # inner models come first
             default = first_children.get(model, NO_ELEMENT)
-            # For a nested model, its own link counts, even if the model is static and its frame is
-            # not attached to the link.
+            # For a nested model, its own pointer counts, even if the model is static and its frame
+            # is not attached to the link.
             inner = pointers.get(default, NO_ELEMENT)
-            if inner >= 0 and elements.kinds[inner] == Kind.LINK:
-                default = inner
-            pointers[model] = self._canonical_pointer(model, default)
+            pointers[model] = self._canonical_pointer(model, default if inner < 0 else inner)
         return pointers
 
     def _canonical_pointer(self, model: int, default: int) -> int:
@@ -183,7 +180,7 @@ class _Builder:
         for model, target in canonical.items():
             # Inner models come first, so a model outside the model does not lead to a link.
             link = links[target] if kinds[target] == Kind.MODEL else body_of[target]
-            if target >= 0 and link >= 0 and kinds[link] == Kind.LINK:
+            if target >= 0 and kinds[link] == Kind.LINK:
                 links[model] = link
         return np.array(links, dtype=np.int32)
 
@@ -273,14 +270,11 @@ class _Builder:
     def _break_cycles(
         self, pointers: Indices, error_class: type[SdfError], verb: str,
     ) -> None:
-        """Report each cycle once, at its first element in the file, and break it there."""
+        """Report each cycle at its first element in the file, and clear its pointers."""
         for cycle in cycles_from_pointers(pointers):
             start = cycle.index(min(cycle))
             first = cycle[start]
-            pointers[first] = NO_ELEMENT
-            if frozenset(cycle) in self._reported_cycles:
-                continue
-            self._reported_cycles.add(frozenset(cycle))
+            pointers[cycle] = NO_ELEMENT
             shown = [f'"{self._scopes.names[index]}"'
                      for index in [*cycle[start:], *cycle[:start], first]]
             if len(shown) > _LONGEST_CYCLE_SHOWN:

@@ -58,20 +58,21 @@ class JointChecks:
     def ends_of(self, joint: int, parent: int, child: int) -> JointEnds | None:
         """Return a joint with the references of its axes; None if it does not join two bodies."""
         ends = JointEnds(joint, parent, child, tuple(
-            (joint, NO_ELEMENT) if axis is None else
-            (self._expressed_in(joint, axis.expressed_in), self._leader(joint, index, axis.mimic))
-            for index, axis in enumerate(self._elements.joints[joint].axes)))
+            (joint, NO_ELEMENT) if axis is None else (
+                self._expressed_in(joint, tag, axis.expressed_in),
+                self._leader(joint, tag, axis.mimic))
+            for tag, axis in zip(AXIS_TAGS, self._elements.joints[joint].axes, strict=True)))
         return ends if self._are_valid(ends) else None
 
-    def _expressed_in(self, joint: int, reference: Reference) -> int:
+    def _expressed_in(self, joint: int, tag: str, reference: Reference) -> int:
         found = joint if not reference.name else self._scopes.frame(
             self._scopes.scope_of[joint], reference.name)
         if found is None:
-            self._report_unknown(ExpressedInError, joint, reference, 'expressed_in', 'axis')
+            self._report_unknown(ExpressedInError, joint, reference, 'expressed_in', tag)
             return joint
         return found
 
-    def _leader(self, joint: int, index: int, mimic: MimicDetails | None) -> int:
+    def _leader(self, joint: int, tag: str, mimic: MimicDetails | None) -> int:
         if mimic is None:
             return NO_ELEMENT
         name, scope = mimic.leader.name, self._scopes.scope_of[joint]
@@ -85,7 +86,7 @@ class JointChecks:
             msg = f'mimic: joint "{name}" has no <{AXIS_TAGS[mimic.axis]}>'
         else:
             return leader
-        self._report(MimicError, msg, joint, mimic.leader.line, AXIS_TAGS[index])
+        self._report(MimicError, msg, joint, mimic.leader.line, tag)
         return NO_ELEMENT
 
     def _is_found_by_parts(self, leader: int, scope: int, name: str) -> bool:
@@ -127,14 +128,13 @@ class JointChecks:
             return False
         parent_body, child_body = self._bodies[ends.parent], self._bodies[ends.child]
         if child_body == parent_body:
-            body = WORLD_FRAME if child_body == root else self._scopes.names[child_body]
             msg = (f'parent "{parent.name}" and child "{child.name}" are both attached to '
-                   f'"{body}"; a joint joins two bodies')
+                   f'"{self._scopes.names[child_body]}"; a joint joins two bodies')
             self._report(JointSameLinkError, msg, joint)
         elif child_body == root:
             msg = f'child "{child.name}" is attached to the world, so nothing can move it'
             self._report(JointChildError, msg, joint, child.line, 'child')
-        return child_body not in (parent_body, root)
+        return child_body != parent_body
 
     def _report_unknown(
         self, error_class: type[SdfError], joint: int, reference: Reference, what: str,

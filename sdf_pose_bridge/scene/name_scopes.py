@@ -10,7 +10,7 @@ Source: ``ScopedGraph.hh`` of libsdformat. A reference in a scope is the absolut
 from __future__ import annotations
 
 from collections import defaultdict
-from itertools import chain, islice
+from itertools import islice
 
 import numpy as np
 
@@ -103,11 +103,11 @@ class NameScopes:
             rest = reference[len(first) + len(SEPARATOR):]
             return (f'; inside a model its own name is not visible, write '
                     f'"{rest or MODEL_FRAME}"')
-        if self._is_model[scope] and reference == WORLD_FRAME:
+        if reference == WORLD_FRAME:  # a world has this frame
             return ('; in a model only joints can name the world, and the <pose> of the model '
                     'itself is relative to it')
         scoped = reference.replace('/', SEPARATOR)
-        if scoped != reference and self.frame(scope, scoped) is not None:
+        if self.frame(scope, scoped) is not None:
             return f'; did you mean "{scoped}"?'
         outer = int(self._elements.parents[scope])
         while outer >= 0:
@@ -116,13 +116,10 @@ class NameScopes:
                         'enclosing scopes cannot be used here')
             outer = int(self._elements.parents[outer])
         if scope not in self._indices:
-            own, prefix = (
-                (MODEL_FRAME, self.names[scope] + SEPARATOR) if self._is_model[scope]
-                else (WORLD_FRAME, ''))
+            prefix = self.names[scope] + SEPARATOR if self._is_model[scope] else ''
             visible = (name[len(prefix):] for name in self._frames[self.roots[scope]]
-                       if name.startswith(prefix) and not name.endswith(_OWN_FRAME))
-            self._indices[scope] = NameIndex(
-                chain([own], islice(visible, _MOST_NAMES_COMPARED - 1)))
+                       if name.startswith(prefix))
+            self._indices[scope] = NameIndex(islice(visible, _MOST_NAMES_COMPARED))
         return self._indices[scope].hint(reference)
 
 

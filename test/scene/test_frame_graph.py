@@ -19,6 +19,7 @@ from sdf_pose_bridge import Kind, load_text
 
 A = '<link name="a"/>'
 B = '<link name="b"><pose>1 0 0 0 0 1.5707963267948966</pose></link>'
+LOOP = '<frame name="f" attached_to="g"/><frame name="g" attached_to="f"/>'
 NESTED = '<model name="n"><pose>0 0 1 0 0 0</pose><link name="k"/></model>'
 
 
@@ -63,10 +64,12 @@ REFUSED = {
         with_a: [
             '<frame name="f" attached_to="f"/>',
             '<frame name="f" attached_to="f"><pose relative_to="a"/></frame>',
-            '<frame name="f" attached_to="g"/><frame name="g" attached_to="f"/>',
+            LOOP + fixed_joint('j', 'f', 'g'),
+            LOOP.replace('"f"/>', '"f"><pose relative_to="h"/></frame>')
+            + posed('frame', 'h', '', 'f'),
             '<frame name="f" attached_to="j"/>' + fixed_joint('j', 'a', 'f'),
             '<joint name="j" type="fixed"><parent>a</parent><child>j</child></joint>'],
-        world_file: ['<frame name="f" attached_to="g"/><frame name="g" attached_to="f"/>'],
+        world_file: [LOOP],
         with_canonical_link: [A + '<frame name="f"/>'],
     },
     'MODEL_WITHOUT_LINK': {
@@ -173,11 +176,12 @@ def test_every_cycle_is_reported():
     frames = """
         <frame name="p"><pose relative_to="q"/></frame>
         <frame name="q"><pose relative_to="p"/></frame>
-        <frame name="r"><pose relative_to="r"/></frame>
+        <frame name="r" attached_to="r"><pose relative_to="r"/></frame>
         <frame name="s"><pose relative_to="t"/></frame>
         <frame name="t"><pose relative_to="u"/></frame>
         <frame name="u"><pose relative_to="s"/></frame>"""
-    assert codes_of(model_file(A + frames)) == ['POSE_RELATIVE_TO_CYCLE'] * 3
+    assert codes_of(model_file(A + frames)) == [
+        'POSE_RELATIVE_TO_CYCLE', 'FRAME_ATTACHED_TO_CYCLE', *['POSE_RELATIVE_TO_CYCLE'] * 2]
 
 
 @pytest.mark.parametrize(('count', 'more'), [(11, ''), (12, '(2 more)'), (500, '(490 more)')])
@@ -218,18 +222,21 @@ def test_unknown_canonical_link_of_a_static_model_is_accepted():
     (A + B, ' b ', 'm::b'),
     ('<static>true</static>' + A + B, '', 'm::a'),
     ('<static>true</static>' + A + B, 'b', 'm::b'),
+    (A + '<model name="n"><static>1</static><frame name="f"/></model>', 'n::f', None),
 ])
 def test_canonical_link(content, canonical, link):
     scene = load_text(model_file(content, attributes=f'canonical_link="{canonical}"'))
     assert name_at(scene, scene.canonical_links, 'm') == link
 
 
-def test_canonical_link_can_be_in_a_static_model():
+@pytest.mark.parametrize(('canonical', 'link'), [('', 'm::n::l'), ('g', 'm::n::k')])
+def test_canonical_link_can_be_in_a_static_model(canonical, link):
     scene = load_text(model_file(
-        '<model name="n"><static>1</static><link name="l"/><frame name="f"/></model>'
+        f'<model name="n" canonical_link="{canonical}"><static>1</static><link name="l"/>'
+        '<link name="k"/><frame name="f"/><frame name="g" attached_to="k"/></model>'
         '<frame name="a" attached_to="n::f"/><frame name="b"/>' + fixed_joint('j', 'a', 'b')))
-    assert name_at(scene, scene.canonical_links, 'm') == 'm::n::l'
-    assert name_at(scene, scene.bodies, 'm::b') == 'm::n::l'
+    assert name_at(scene, scene.canonical_links, 'm') == link
+    assert name_at(scene, scene.bodies, 'm::b') == link
     assert name_at(scene, scene.bodies, 'm::a') == 'm::n'
 
 
@@ -278,7 +285,8 @@ def test_body_of_a_frame(name, body):
           <frame name="on_s" attached_to="s"/>
           <model name="s"><static>1</static></model>
         </model>
-        <frame name="on_m" attached_to="m"/>
         <frame name="fixed"/>
-        <frame name="on_fixed" attached_to="fixed"><pose relative_to="m::a"/></frame>"""))
+        <frame name="on_fixed" attached_to="fixed"><pose relative_to="m::a"/></frame>
+        <frame name="on_m" attached_to="m"/>"""))
     assert name_at(scene, scene.bodies, name) == body
+    assert name_at(scene, scene.canonical_links, 'm::s') is None

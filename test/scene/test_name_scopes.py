@@ -128,10 +128,13 @@ def test_a_name_with_a_separator_cannot_be_that_of_another_element(content):
                 + posed('frame', 'f', '', 'n/l')), ['did you mean "n::l"?']),
     (in_model('m::l'), ['its own name is not visible', '"l"']),
     (in_model('m'), ['"__model__"']),
+    (in_model('world'), ['in a model only joints can name the world']),
     (in_nested('l'), ['enclosing scopes']),
     (in_nested('n2/deep'), ['has a frame "n2::deep", but names of enclosing scopes']),
+    (in_nested('m::l'), ['the top of the file has a frame "m::l"']),
     (in_nested('zzz'), ['model "m::n::n2"']),
     (in_nested('__modl__'), ['did you mean "__model__"?']),
+    (in_model('n::__modl__'), ['did you mean "n::__model__"?']),
     (in_world('wrld'), ['did you mean "world"?']),
     (world_file(posed('frame', 'r', '') + '<model name="m"><link name="l"/>'
                 + posed('frame', 'f', '', 'r') + '</model>'), ['world "w" has a frame "r"']),
@@ -142,8 +145,9 @@ def test_message_helps_to_find_the_name(text, words):
     assert [word for word in words if word not in message] == []
 
 
-def test_message_has_no_name_if_none_is_similar():
-    assert 'did you mean' not in only_error(in_model('zzzzzz')).message
+@pytest.mark.parametrize('text', [in_model('zzzzzz'), in_world('w::m')])
+def test_message_has_no_hint_if_no_name_is_similar(text):
+    assert ';' not in only_error(text).message
 
 
 def test_many_unknown_references_among_many_names_are_reported_fast():

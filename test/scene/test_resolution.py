@@ -10,11 +10,13 @@ import pytest
 from sdf_texts import (
     assert_at,
     joint,
+    LINK,
     model_file,
     only_error,
     posed,
     TWO_LINKS,
     world_file,
+    write_files,
 )
 
 from sdf_pose_bridge import load_text
@@ -70,11 +72,13 @@ def test_automatic_inertial_that_is_too_large_is_an_error(size):
     assert error.code in ('LINK_INERTIA_INVALID', 'ELEMENT_INVALID')
 
 
-def test_elements_that_are_left_out_change_nothing_else():
+def test_elements_that_are_left_out_change_nothing_else(tmp_path):
+    write_files(tmp_path, leaf=model_file(LINK))
     mimic = '<axis><xyz>0 0 1</xyz><mimic joint="{}"/></axis>'
     box = '<geometry><box><size>1 2 3</size></box></geometry>'
     text = world_file(
-        f'{{}}<model name="m" placement_frame="f">{TWO_LINKS}<link name="c">'
+        '{}<include><uri>leaf.sdf</uri><name>i</name></include>'
+        f'<model name="m" placement_frame="f">{TWO_LINKS}<link name="c">'
         f'<inertial auto="true"/><collision name="c">{box}</collision>'
         f'<visual name="v">{box}</visual>'
         '<sensor name="s" type="camera"><camera/></sensor></link><plugin name="p" filename="p"/>'
@@ -86,7 +90,8 @@ def test_elements_that_are_left_out_change_nothing_else():
         + '</model></model>', version='1.11').replace('</sdf>', '<world name="v"/></sdf>')
     ghost = posed('light', 'ghost', '1e301 0 0 0 0 0', 'zzz')
     plain, scene = (
-        load_text(text.format(first), shapes=True, plugins=True) for first in ('', ghost))
+        load_text(text.format(first), str(tmp_path / 'main.sdf'), shapes=True, plugins=True)
+        for first in ('', ghost))
     assert [axis.mimic is not None for joint in scene.joints for axis in joint.axes[:1]] == [
         False, True, False]
     assert [*scene.world_names.values()] == ['w', 'v']

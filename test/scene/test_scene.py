@@ -7,7 +7,7 @@ import copy
 from matrices import assert_same_pose, matrix_from_rpy
 import numpy as np
 import pytest
-from sdf_texts import model_file, world_file
+from sdf_texts import fixed_joint, model_file, world_file
 
 from sdf_pose_bridge import load_text, SdfError, UnknownFrameError
 from sdf_pose_bridge.tf.lookup import PoseLookup
@@ -180,13 +180,10 @@ def test_scene_has_roots_and_names_of_worlds(worlds):
 
 
 def test_joint_has_its_ends():
-    scene = load_text(world_file("""
-        <model name="table"><pose>1 2 0 0 0 0</pose>
-          <link name="top"><pose>0 0 1 0 0 0</pose></link>
-        </model>
-        <joint name="j" type="fixed"><parent>world</parent><child>table::top</child></joint>"""))
-    assert [(scene.names[joint.parent], scene.names[joint.child]) for joint in scene.joints] == [
-        ('world', 'table::top')]
+    scene = load_text(TWO_WORLDS.replace(
+        '"night">', '"night">' + fixed_joint('j', 'world', 'table::top')))
+    assert [(scene.own_name(each.parent), scene.names[each.child]) for each in scene.joints] == [
+        ('night', 'table::top')]
 
 
 def test_pose_is_relative_to_its_reference():
