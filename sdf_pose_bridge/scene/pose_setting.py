@@ -190,7 +190,8 @@ def _check_instances(
 def _check_joints(scene: Scene, element: int, in_reference: Pose, at: Place) -> None:
     reference = int(scene.references[element])
     expected = scene.relative_pose_of(element, reference)
-    if max(distance_and_angle(in_reference, expected)) > TOLERANCE * (1.0 + _size_m(scene)):
+    size_m = np.abs(scene.poses[:, :3]).max()
+    if max(distance_and_angle(in_reference, expected)) > TOLERANCE * (1.0 + size_m):
         msg = (f'a joint has moved "{scene.names[element]}" away from "{scene.names[reference]}", '
                'which its pose in the file is relative to; move the joint back, or set the pose '
                'of another frame')
@@ -223,9 +224,8 @@ def _error_with_origin(
         # The first ``<origin>`` is read.
         joint.xml.insert(0, origin)
         new = load({path: etree.tostring(file.root)})
-        joint.xml.remove(origin)
         difference = max(distance_and_angle(measure(new, element), asked))
-        if difference <= 10.0 * _ORIGIN_ERROR * (1.0 + _size_m(scene)):
+        if difference <= 10.0 * _ORIGIN_ERROR:
             msg = (f'poses are not set in URDF; this one needs joint "{joint.xml.get("name")}": '
                    f'{etree.tostring(origin).decode()}')
             return PoseNotSetError(msg, sources.place(joint.xml))
@@ -247,10 +247,6 @@ def _joints_to_move(name: str, joints: Mapping[str, RobotJoint]) -> Sequence[Rob
             distance_and_angle(joint.origin, OPTICAL_POSE)) < _OPTICAL_TOLERANCE
         joint = joints.get(joint.parent) if is_optical else None
     return found
-
-
-def _size_m(scene: Scene) -> float:
-    return float(np.abs(scene.poses[:, :3]).max())
 
 
 def are_close(a: Pose, b: Pose) -> bool:

@@ -99,8 +99,7 @@ def scene_from_graph(
         shapes=kept(elements.shapes),
         plugins=kept(elements.plugins),
         urdf_texts=kept({
-            model: details.urdf_texts for model, details in elements.models.items()
-            if details.urdf_texts}),
+            model: details.urdf_texts for model, details in elements.models.items()}),
         lines=elements.lines[is_kept],
         pose_lines=elements.pose_lines[is_kept],
         includes=kept(elements.includes),

@@ -178,9 +178,8 @@ class Scene(ReadOnly):
         before = self._only_model.removesuffix(SEPARATOR)
         if not (name and before):
             return self
-        return replace(self, names=tuple(
-            name + each.removeprefix(before) if (each + SEPARATOR).startswith(self._only_model)
-            else each for each in self.names))
+        return replace(self, names=(
+            self.names[0], *(name + each.removeprefix(before) for each in self.names[1:])))
 
     def has(self, name: str) -> bool:
         """Return whether an element has an absolute name, in any world."""

@@ -51,17 +51,14 @@ class Inertial(NamedTuple):
         if not all(map(math.isfinite, self.moments_kg_m2)):
             return False
         xx, yy, zz, xy, xz, yz = self.moments_kg_m2
-        tolerance = _TOLERANCE * abs(0.5 * (xx + yy + zz))
-        smallest, middle, largest = (
-            np.linalg.eigvalsh(matrix_from_moments(self.moments_kg_m2)).tolist()
-            if xy or xz or yz else sorted((xx, yy, zz)))
+        tolerance = _TOLERANCE * 0.5 * (xx + yy + zz)
+        smallest, middle, largest = np.linalg.eigvalsh(matrix_from_moments(self.moments_kg_m2))
         # The rounding is that of gz-math (Matrix3::Determinant).
         determinant = (
             (zz * yy - yz * yz) * xx - (zz * xy - xz * yz) * xy + (yz * xy - xz * yy) * xz)
         return bool(
-            self.mass_kg >= 0.0 and xx + tolerance >= 0.0
-            and xx * yy - xy * xy + tolerance >= 0.0 and determinant + tolerance >= 0.0
-            and smallest + tolerance >= 0.0 and smallest + middle + tolerance >= largest)
+            self.mass_kg >= 0.0 and xx * yy - xy * xy + tolerance >= 0.0
+            and determinant + tolerance >= 0.0 and smallest + middle + tolerance >= largest)
 
 
 class AutomaticInertial(NamedTuple):
@@ -182,4 +179,4 @@ def _automatic_inertial(
             masses_kg.append(density_kg_m3 * solid.volume_m3)
     mass_kg = None if first_child(inertial, 'mass') is None else (
         number_of_child(inertial, 'mass', 1.0))
-    return AutomaticInertial(tuple(solids), tuple(masses_kg), mass_kg) if solids else None
+    return AutomaticInertial(tuple(solids), tuple(masses_kg), mass_kg)

@@ -6,16 +6,16 @@ import pytest
 from sdf_texts import (
     assert_at,
     codes_of,
+    element,
     fixed_joint,
     model_file,
-    names_of,
     only_error,
     posed,
     warning_codes,
     world_file,
 )
 
-from sdf_pose_bridge import Kind, load_text
+from sdf_pose_bridge import load_text
 
 A = '<link name="a"/>'
 B = '<link name="b"><pose>1 0 0 0 0 1.5707963267948966</pose></link>'
@@ -123,32 +123,18 @@ def test_unknown_name_gives_no_other_errors():
     assert 'POSE_RELATIVE_TO_INVALID' not in codes_of(text)
 
 
-@pytest.mark.parametrize('tag', [
-    'visual', 'collision', 'sensor', 'light', 'particle_emitter', 'projector'])
-def test_child_of_a_link_with_an_unknown_reference_is_left_out(tag):
-    scene = load_text(model_file(
-        '<link name="a">' + posed(tag, 'ghost', '1 0 0 0 0 0', 'zzz')
-        + posed(tag, 'good', '1 0 0 0 0 0') + '</link>'))
-    assert names_of(scene) == ['m', 'm::a', 'm::a::good']
+@pytest.mark.parametrize('text', [
+    *(model_file(f'<link name="a">{posed(tag, "ghost", "", "zzz")}{element(tag, "good")}</link>')
+      for tag in ('visual', 'collision', 'sensor', 'light', 'particle_emitter', 'projector')),
+    model_file(A + B + fixed_joint(
+        'good', 'a', 'b', posed('sensor', 'ghost', '', 'zzz'))),
+    world_file(posed('light', 'ghost', '', 'zzz') + element('light', 'good')),
+])
+def test_element_that_is_no_frame_with_an_unknown_reference_is_left_out(text):
+    scene = load_text(text)
+    assert (scene.own_name(-1), 'ghost' in scene.names[-2]) == ('good', False)
     assert warning_codes(scene) == ['POSE_RELATIVE_TO_INVALID']
     assert '"zzz"' in scene.warnings[0].message
-
-
-@pytest.mark.parametrize('text', [
-    model_file("""
-        <link name="a"/>
-        <link name="b"><pose>1 0 0 0 0 1.5707963267948966</pose></link>
-        <joint name="j" type="fixed">
-          <parent>a</parent>
-          <child>b</child>
-          <sensor name="s" type="camera"><pose relative_to="zzz"/></sensor>
-        </joint>"""),
-    world_file('<light name="s" type="point"><pose relative_to="zzz"/></light>'),
-])
-def test_sensor_or_light_elsewhere_with_an_unknown_reference_is_left_out(text):
-    scene = load_text(text)
-    assert not [name for name in scene.names if name.endswith('s')]
-    assert warning_codes(scene) == ['POSE_RELATIVE_TO_INVALID']
 
 
 @pytest.mark.parametrize(('attribute', 'code'), [
@@ -203,11 +189,6 @@ def test_message_explains_the_default_reference_of_a_joint(reference, is_default
 
 # Models
 
-def test_unknown_canonical_link_of_a_static_model_is_accepted():
-    scene = load_text(model_file('<static>1</static>' + A, attributes='canonical_link="zzz"'))
-    assert name_at(scene, scene.canonical_links, 'm') == 'm::a'
-
-
 @pytest.mark.parametrize(('content', 'canonical', 'link'), [
     (A + B, '', 'm::a'),
     (A + B, 'b', 'm::b'),
@@ -222,6 +203,7 @@ def test_unknown_canonical_link_of_a_static_model_is_accepted():
     (A + B, ' b ', 'm::b'),
     ('<static>true</static>' + A + B, '', 'm::a'),
     ('<static>true</static>' + A + B, 'b', 'm::b'),
+    ('<static>1</static>' + A, 'zzz', 'm::a'),
     (A + '<model name="n"><static>1</static><frame name="f"/></model>', 'n::f', None),
 ])
 def test_canonical_link(content, canonical, link):
@@ -251,16 +233,6 @@ def test_canonical_link_moves_nothing(canonical):
     scene = load_text(model_file(content, attributes=f'canonical_link="{canonical}"'))
     assert_at(scene, 'm', (0, 0, 1))
     assert_at(scene, 'm::g', (0, 5, 1))
-
-
-# Default references
-
-def test_reference_of_an_inertial_is_the_link():
-    scene = load_text(model_file(
-        '<link name="a"><pose>1 0 0 0 0 0</pose><inertial><pose>0 1 0 0 0 0</pose></inertial>'
-        '</link>'))
-    assert scene.kinds[-1] == Kind.INERTIAL
-    assert scene.poses[-1, :3].tolist() == [1, 1, 0]
 
 
 # Attachment

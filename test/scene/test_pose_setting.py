@@ -15,6 +15,9 @@ from sdf_pose_bridge.scene.pose_setting import pose_change
 
 ASKED = Pose(0.5, -1.0, 2.0, 0.5, 0.5, 0.5, 0.5)
 MODEL = model_file(posed('link', 'a', '1 0 0 0 0 0') + posed('frame', 'f', '0 1 0 0 0 1', 'a'))
+PLACED = model_file(
+    '<pose>1 2 3 0 1 0</pose><link name="a"><pose>0 0 1 0 0 2</pose></link>',
+    attributes='placement_frame="a"')
 TWICE = world_file(
     '<include><uri>m.sdf</uri><name>x</name><pose>5 0 0 0 0 0</pose></include>\n'
     '<include><uri>m.sdf</uri><name>y</name></include>')
@@ -23,7 +26,8 @@ ROBOT = urdf_texts.robot(
     ''.join(map(urdf_texts.link, ('base', 'arm', 'eye', 'optical')))
     + urdf_texts.joint(
         'turn', 'base', 'arm', 'continuous', urdf_texts.origin('0 1 0', '0 0 0.5'))
-    + urdf_texts.joint('mount', 'arm', 'eye')
+    + urdf_texts.joint(
+        'mount', 'arm', 'eye', 'fixed', urdf_texts.origin('0.2 0 0.1', '0 0.3 0'))
     + urdf_texts.joint('rep103', 'eye', 'optical', 'fixed', urdf_texts.origin(
         rpy='-1.5708 0 -1.5708')))
 
@@ -58,17 +62,13 @@ def assert_at(pose, expected, tolerance=1e-9):
     # The frame that the pose is relative to is turned.
     (MODEL.replace('1 0 0 0 0 0', '1 0 0 0.2 0 1'), 'm::f', ''),
     # Digits that are enough near the placement frame are too few at the model frame.
-    (model_file('<pose>1 2 3 0 1 0</pose><link name="a"><pose>0 0 300 0 0 2</pose></link>',
-                attributes='placement_frame="a"'), 'm', ''),
+    (PLACED.replace('0 0 1 0 0 2', '0 0 300 0 0 2'), 'm', ''),
     (model_file('<link name="a"/><link name="b"/>' + fixed_joint('j', 'a', 'b')), 'm::j', 'm::a'),
     (model_file('<link name="a"><sensor name="s" type="camera"/></link>'), 'm::a::s', 'm'),
     # The pose of the model is that of its placement frame.
-    (model_file('<pose>1 2 3 0 1 0</pose><link name="a"><pose>0 0 1 0 0 2</pose></link>',
-                attributes='placement_frame="a"'), 'm', ''),
-    (model_file('<pose>1 2 3 0 1 0</pose><link name="a"><pose>0 0 1 0 0 2</pose></link>',
-                attributes='placement_frame="a"'), 'm::a', 'm'),
-    (model_file('<pose>1 2 3 0 1 0</pose><link name="a"><pose>0 0 1 0 0 2</pose></link>',
-                attributes='placement_frame="a"'), 'm::a', ''),
+    (PLACED, 'm', ''),
+    (PLACED, 'm::a', 'm'),
+    (PLACED, 'm::a', ''),
     (MODEL.replace('1.9', '1.4').replace('relative_to="a"', ''), 'm::a', ''),
 ])
 def test_the_pose_is_what_was_asked_for(change, tmp_path, text, name, relative_to):
@@ -201,13 +201,18 @@ def test_the_origin_that_urdf_needs_is_named(
     assert_at(load(path).pose(*names), ASKED, 3e-6)
 
 
-def test_a_joint_that_moves_stays_where_an_optical_frame_is_measured(change, tmp_path):
-    write_files(tmp_path, m=ROBOT.replace('"fixed"', '"continuous"', 1))
-    with pytest.raises(PoseNotSetError, match='joint "rep103"'):
-        change('r::optical', 'r::base')
-
-
-def test_a_joint_with_the_name_of_a_link_is_named_as_in_the_file(change, tmp_path):
-    write_files(tmp_path, m=ROBOT.replace('"mount"', '"eye"'))
-    with pytest.raises(PoseNotSetError, match='joint "eye": '):
-        change('r::eye_joint', 'r::base')
+@pytest.mark.parametrize(('old', 'new', 'name', 'joint'), [
+    # A joint that moves is not set in place of another one.
+    ('"mount" type="fixed"', '"mount" type="continuous"', 'optical', 'rep103'),
+    ('"rep103" type="fixed"', '"rep103" type="continuous"', 'optical', 'rep103'),
+    ('"turn" type="continuous"', '"turn" type="fixed"', 'eye', 'mount'),
+    # The name is that in the file.
+    ('"mount"', '"eye"', 'eye_joint', 'eye'),
+    # The pose of the robot places the link "world", too.
+    ('name="r">', f'name="r">{urdf_texts.origin("0 0 7")}', 'arm', 'turn'),
+])
+def test_joint_that_can_place_a_link(change, tmp_path, old, new, name, joint):
+    robot = ROBOT if '7' not in new else ROBOT.replace('"base"', '"world"')
+    write_files(tmp_path, m=robot.replace(old, new))
+    with pytest.raises(PoseNotSetError, match=f'joint "{joint}"'):
+        change(f'r::{name}')

@@ -20,7 +20,8 @@ IDS = """<model name="arm">
 <link name="hand_left"><visual name="palm"/></link>
 <frame name="grip"/>
 <x:thing name="thing"/>
-<model name="tool"><link name="p"/><frame name="tip"/>
+<model name="tool"><frame name="tool::tip"/><link name="p"/><frame name="tool::p"/>
+<frame name="tip"/>
 <model name="inner"><frame name="end"/></model></model>
 </model>"""
 
@@ -45,7 +46,8 @@ def test_unknown_id_is_not_found(arm, element_id, tag):
 @pytest.mark.parametrize(('element_id', 'tag', 'name'), [
     ('base', '', 'base'), ('base', 'link', 'base'), ('base::shape', 'visual', 'shape'),
     ('base::eye', 'sensor', 'eye'), ('grip', 'frame', 'grip'), ('tool', 'model', 'tool'),
-    ('tool::tip', '', 'tip'), ('tool::inner::end', 'frame', 'end'), ('thing', 'x:thing', 'thing'),
+    ('tool::tip', '', 'tool::tip'), ('tool::tip', 'frame', 'tip'),
+    ('tool::p', '', 'p'), ('tool::inner::end', 'frame', 'end'), ('thing', 'x:thing', 'thing'),
     ('hand_left::palm', 'visual', 'palm'), ('tool::p', 'link', 'p'), ('h', '', 'h'),
     ('ö', 'link', 'ö'),  # two bytes
 ])
