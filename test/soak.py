@@ -96,7 +96,7 @@ def rewrite(path, seconds, pid):
 def soak(folder, minutes, domain):
     """Do all of it, print what was measured, and return whether everything is as it should be."""
     path = Path(folder, 'cell.sdf')
-    path.write_text(world(0), encoding='utf-8')
+    path.write_text(world(0))
     spawning = multiprocessing.get_context('spawn')
     last, results = spawning.Value('d', 0.0), spawning.Queue()
     bridge = BridgeProcess(sdf_file=path).wait_until_started()

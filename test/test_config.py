@@ -19,7 +19,7 @@ DEFAULTS = {name: declaration.default for name, declaration in DECLARATIONS.item
 
 
 def values_in_file():
-    (node, entries), = yaml.safe_load(FILE.read_text(encoding='utf-8')).items()
+    (node, entries), = yaml.safe_load(FILE.read_text()).items()
     assert node == '/**'
     assert entries.keys() == {'ros__parameters'}
     return entries['ros__parameters']
@@ -34,7 +34,7 @@ def test_there_is_every_parameter_that_has_a_default_and_no_other():
 
 
 def test_a_running_node_keeps_its_file():
-    assert '    # sdf_file: ' in FILE.read_text(encoding='utf-8')
+    assert '    # sdf_file: ' in FILE.read_text()
 
 
 @pytest.mark.parametrize('name', values_in_file())
@@ -46,9 +46,9 @@ def test_a_value_is_the_default(name):
 
 def test_a_node_takes_it(make_node, tmp_path):
     copy = tmp_path / 'bridge.yaml'
-    text = FILE.read_text(encoding='utf-8')
+    text = FILE.read_text()
     text = text.replace('# sdf_file: package://my_robot/worlds/', 'sdf_file: ')
-    copy.write_text(text, encoding='utf-8')
+    copy.write_text(text)
     with_file = make_node('with_file', '--params-file', str(copy))
     without = make_node('without', '-p', 'sdf_file:=cell.sdf')
     assert settings_from_node(with_file).values == settings_from_node(without).values

@@ -88,8 +88,8 @@ def test_the_lists_name_nothing_that_is_gone():
         assert any(command.startswith(known) for command in commands()), known
 
 
-@pytest.fixture(name='folder')
-def copied_files(tmp_path, monkeypatch):
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
     for name in ('examples', 'docs/pictures'):
         shutil.copytree(ROOT / name, tmp_path / name)
     # As the page about calibration says.

@@ -64,7 +64,7 @@ def parameters_of_nodes(name, **arguments):
         found[executable] = {}
         for file, is_file in node._Node__expanded_parameter_arguments:
             assert is_file
-            entries, = yaml.safe_load(Path(file).read_text(encoding='utf-8')).values()
+            entries, = yaml.safe_load(Path(file).read_text()).values()
             found[executable].update(entries['ros__parameters'])
     return found
 
@@ -72,7 +72,7 @@ def parameters_of_nodes(name, **arguments):
 def command(folder, monkeypatch, name, text):
     """Make a command that runs a text of the shell, before all others of its name."""
     file = folder / name
-    file.write_text(f'#!/bin/sh\n{text}\n', encoding='utf-8')
+    file.write_text(f'#!/bin/sh\n{text}\n')
     file.chmod(0o755)
     monkeypatch.setenv('PATH', f'{folder}:{os.environ["PATH"]}')
 
@@ -206,7 +206,7 @@ def test_the_fixed_frame_of_rviz_is_the_root_of_what_is_published(tmp_path):
 
 
 def test_rviz_shows_frames_and_visuals():
-    manager = yaml.safe_load(RVIZ_FILE.read_text(encoding='utf-8'))['Visualization Manager']
+    manager = yaml.safe_load(RVIZ_FILE.read_text())['Visualization Manager']
     assert manager['Global Options']['Fixed Frame'] == 'world'
     displays = {each['Class'].split('/')[1]: each for each in manager['Displays']}
     assert displays['TF']['Enabled']
@@ -219,7 +219,7 @@ def test_rviz_shows_frames_and_visuals():
 
 def test_beside_robot_state_publisher_the_two_publish_different_frames(tmp_path):
     urdf_file = tmp_path / 'robot.urdf'
-    urdf_file.write_text(URDF, encoding='utf-8')
+    urdf_file.write_text(URDF)
     nodes = parameters_of_nodes(
         'beside_robot_state_publisher.launch.py', urdf_file=str(urdf_file), sdf_file='cell.sdf')
     assert nodes == {
@@ -240,7 +240,7 @@ def test_the_bridge_of_gazebo_and_the_node_get_files_that_match(tmp_path, monkey
     installed('ros_gz_bridge', tmp_path, monkeypatch)
     world = tmp_path / 'w.sdf'
     world.write_text(world_file('<model name="a"><link name="l"/><plugin filename='
-                                '"gz-sim-diff-drive-system" name=""/></model>'), encoding='utf-8')
+                                '"gz-sim-diff-drive-system" name=""/></model>'))
     nodes = parameters_of_nodes('gazebo.launch.py', sdf_file=str(world))
     entries = yaml.safe_load(Path(nodes['parameter_bridge']['config_file']).read_text())
     assert '/a/odometry' in [each['ros_topic_name'] for each in entries]

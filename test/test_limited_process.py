@@ -27,8 +27,8 @@ NO_ANSWER = r'has not answered in \d s, of which it used \d\.\d s of the process
 STARTER_ENDED = 'the process that starts the reading of files has ended'
 
 
-@pytest.fixture(name='pipe')
-def make_pipe():
+@pytest.fixture
+def pipe():
     """Descriptors to read from and to write to, which processes inherit."""
     ends = os.pipe()
     yield ends
@@ -50,8 +50,8 @@ def lasting(process):
     assert process.call(AMPLE, pow, 2, 2) == 4
 
 
-@pytest.fixture(name='busy')
-def start_busy_call(process, pipe):
+@pytest.fixture
+def busy(process, pipe):
     """Starts a call that says when it runs; ``with busy(allowance, code) as (call, pid)``."""
     reader, writer = pipe
 

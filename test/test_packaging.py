@@ -152,8 +152,8 @@ def test_names_of_other_programs_are_used_in_a_ros_workspace_only(command, node)
     assert {script.split(' = ')[0] for script in scripts} == {'sdf_pose', *node}
 
 
-@pytest.fixture(name='scripts', scope='module')
-def installed_scripts(tmp_path_factory):
+@pytest.fixture(scope='module')
+def scripts(tmp_path_factory):
     """Folder of the scripts as they are installed for ROS."""
     folder = tmp_path_factory.mktemp('scripts')
     run_setup('egg_info', '--egg-base', folder, 'install_scripts', '--install-dir', folder)

@@ -33,14 +33,14 @@ def build(source, target, *options, **environment):
     return target
 
 
-@pytest.fixture(name='pages', scope='module')
-def built_pages(tmp_path_factory):
+@pytest.fixture(scope='module')
+def pages(tmp_path_factory):
     """Folder of the pages as `make docs` builds them for a web site."""
     return build(ROOT / 'docs', tmp_path_factory.mktemp('pages'), DOCS_URL=URL)
 
 
-@pytest.fixture(name='pages_of_rosdoc2', scope='module')
-def pages_built_as_by_rosdoc2(tmp_path_factory):
+@pytest.fixture(scope='module')
+def pages_of_rosdoc2(tmp_path_factory):
     """Folder of the pages as rosdoc2 builds them, from a copy of docs with pages of its own."""
     copy = tmp_path_factory.mktemp('copy') / 'wrapped'
     shutil.copytree(ROOT / 'docs', copy, ignore=shutil.ignore_patterns('_build'))

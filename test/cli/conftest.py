@@ -33,8 +33,8 @@ WARNED = GOOD.replace('<link name="l"/>', """<link name="l">
     </link>""")
 
 
-@pytest.fixture(name='files')
-def folder_of_files(tmp_path):
+@pytest.fixture
+def files(tmp_path):
     """Folder with a valid file, an invalid one and one with a warning."""
     for name, text in (('good', GOOD), ('bad', BAD), ('warned', WARNED)):
         (tmp_path / f'{name}.sdf').write_text(text)

@@ -11,8 +11,8 @@ from folders import ROOT
 import pytest
 
 
-@pytest.fixture(name='diff')
-def make_diff(run_main, files):
+@pytest.fixture
+def diff(run_main, files):
     text = (files / 'good.sdf').read_text()
 
     def diff(old, new, *arguments):

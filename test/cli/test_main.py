@@ -20,7 +20,7 @@ def test_without_a_command_all_are_listed_with_a_line_each(run_main):
     listed = re.findall(r'^    ([a-z_]+) +\S.*$', done.stdout, re.MULTILINE)
     modules = (ROOT / 'sdf_pose_bridge/cli').glob('*.py')
     assert set(listed) == {
-        module.stem for module in modules if '\nHELP = ' in module.read_text(encoding='utf-8')}
+        module.stem for module in modules if '\nHELP = ' in module.read_text()}
 
 
 def test_version(sdf_pose_in_shell):

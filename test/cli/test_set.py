@@ -8,13 +8,13 @@ from sdf_texts import INCLUDES_LEAF, LINK, link_with, model_file, write_files
 from sdf_pose_bridge import load
 
 
-@pytest.fixture(name='path')
-def make_path(files):
+@pytest.fixture
+def path(files):
     return files / 'good.sdf'
 
 
-@pytest.fixture(name='set_pose')
-def make_set_pose(run_main):
+@pytest.fixture
+def set_pose(run_main):
     """Sets a pose in the file, and returns what is printed; ``set_pose(*arguments)``."""
     def set_pose(*arguments):
         done = run_main('set', 'good.sdf', *arguments)

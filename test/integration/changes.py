@@ -37,7 +37,7 @@ def world(x, name='crate', extra=''):
 def replace(path, text):
     """Write a file as editors do: beside it, and then in its place."""
     new = path.with_suffix('.new')
-    new.write_text(text, encoding='utf-8')
+    new.write_text(text)
     new.replace(path)
 
 

@@ -62,7 +62,7 @@ def start_program(ros_domain):
 def file(request, tmp_path):
     """File with ``FILE_TEXT`` of the module, or with a small world; a test may change it."""
     path = tmp_path / 'cell.sdf'
-    path.write_text(getattr(request.module, 'FILE_TEXT', world(1)), encoding='utf-8')
+    path.write_text(getattr(request.module, 'FILE_TEXT', world(1)))
     return path
 
 
@@ -70,7 +70,7 @@ def file(request, tmp_path):
 def shared_bridge(start_shared_bridge, start_shared_listener, tmp_path_factory):
     """A bridge that tests of a module use one after the other."""
     path = tmp_path_factory.mktemp('shared') / 'cell.sdf'
-    path.write_text(world(1), encoding='utf-8')
+    path.write_text(world(1))
     bridge = start_shared_bridge(sdf_file=path).wait_until_started()
     return SharedBridge(bridge, start_shared_listener())
 

@@ -20,7 +20,7 @@ class SlowFile:
 
     def __init__(self, path, text=''):
         self.path = path
-        path.write_text(text, encoding='utf-8')
+        path.write_text(text)
         # The kernel tells the holder of a lease by this signal, which would end the process.
         signal.signal(signal.SIGIO, signal.SIG_IGN)
         if not text:

@@ -10,8 +10,8 @@ from folders import EXAMPLES
 import pytest
 
 
-@pytest.fixture(name='ask', scope='module')
-def ask_running_bridge(start_shared_bridge):
+@pytest.fixture(scope='module')
+def ask(start_shared_bridge):
     """Asks a bridge; ``ask(*arguments)`` returns the ended process."""
     start_shared_bridge(sdf_file=EXAMPLES / 'work_cell.sdf').wait_until_started()
 

@@ -23,8 +23,8 @@ from slow_file import SlowFile
 from sdf_pose_bridge_interfaces.srv import ConvertRotation, LookupPose
 
 
-@pytest.fixture(name='slow')
-def make_slow_file(tmp_path):
+@pytest.fixture
+def slow(tmp_path):
     return SlowFile(tmp_path / 'slow.sdf')
 
 
@@ -59,7 +59,7 @@ def test_services_answer_while_a_changed_file_is_read(file, slow, listener):
 
 def test_what_is_asked_for_during_a_reload_comes_after_it(file, listener, tmp_path):
     other = tmp_path / 'other.sdf'
-    other.write_text(world(5), encoding='utf-8')
+    other.write_text(world(5))
     set_parameters(listener, watch=False)
     slow = SlowFile(file, world(1))
     slow.hold()

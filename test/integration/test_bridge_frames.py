@@ -73,7 +73,7 @@ TF_MESSAGE_HASH = 'RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe
 @pytest.fixture(scope='module')
 def sdf_file(tmp_path_factory):
     path = tmp_path_factory.mktemp('frames') / 'hall.sdf'
-    path.write_text(FILE, encoding='utf-8')
+    path.write_text(FILE)
     return path
 
 

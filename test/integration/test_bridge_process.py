@@ -57,8 +57,8 @@ _spin_until_signal(executor, node, loader)
 STOP_SIGNALS = pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 
 
-@pytest.fixture(name='start')
-def start_on_file(start_bridge, file):
+@pytest.fixture
+def start(start_bridge, file):
     """Starts a bridge on the file; ``start(*arguments, **parameters)``."""
     return partial(start_bridge, sdf_file=file)
 
@@ -81,7 +81,7 @@ def assert_ended_well(bridge):
 ])
 def test_each_reason_not_to_start_has_a_line(
         start_bridge, tmp_path, monkeypatch, parameters, patterns):
-    (tmp_path / 'bad.sdf').write_text(BAD, encoding='utf-8')
+    (tmp_path / 'bad.sdf').write_text(BAD)
     monkeypatch.chdir(tmp_path)
     bridge = start_bridge(**parameters)
     assert bridge.wait_for_end() == 1

@@ -112,7 +112,7 @@ def test_a_broken_file_is_reported_and_its_repair_is_noticed(bridge, file, liste
     monitor = Monitor(listener)
     monitor.wait_for(DiagnosticStatus.OK)
     text = world(8)
-    with file.open('w', encoding='utf-8') as half:
+    with file.open('w') as half:
         half.write(text[:40])
         half.flush()
         monitor.wait_for(DiagnosticStatus.ERROR)
@@ -131,13 +131,13 @@ def test_an_include_is_found_once_it_appears_is_mended_or_named_anew(
     bridge.wait_for_line('URI_LOOKUP')
     new = tmp_path / 'new'
     new.mkdir()
-    (new / 'model.config').write_text(config('a.sdf'), encoding='utf-8')
-    (new / 'a.sdf').write_text('<sdf', encoding='utf-8')
+    (new / 'model.config').write_text(config('a.sdf'))
+    (new / 'a.sdf').write_text('<sdf')
     new.rename(tmp_path / 'box')
     bridge.wait_for_line('box/a.sdf:1: FILE_READ')
     replace(tmp_path / 'box/a.sdf', box(2))
     wait_for_x(listener, 2.0, 'box/l')
-    (tmp_path / 'box/b.sdf').write_text(box(3), encoding='utf-8')
+    (tmp_path / 'box/b.sdf').write_text(box(3))
     replace(tmp_path / 'box/model.config', config('b.sdf'))
     wait_for_x(listener, 3.0, 'box/l')
 

@@ -27,12 +27,12 @@ RIG = urdf_texts.robot(
     + urdf_texts.joint('mount', 'post', 'camera'))
 
 
-@pytest.fixture(name='path')
-def write_files(tmp_path):
-    (tmp_path / 'rig.urdf').write_text(RIG, encoding='utf-8')
-    (tmp_path / 'gauge.sdf').write_text(GAUGE, encoding='utf-8')
+@pytest.fixture
+def path(tmp_path):
+    (tmp_path / 'rig.urdf').write_text(RIG)
+    (tmp_path / 'gauge.sdf').write_text(GAUGE)
     path = tmp_path / 'cell.sdf'
-    path.write_text(ARM, encoding='utf-8')
+    path.write_text(ARM)
     return path
 
 
@@ -60,7 +60,7 @@ def test_measured_poses_go_into_the_files(
     answer = ask(client, 'fixture', 0.5, 'arm/tool')
     assert (answer.success, answer.message) == (True, '')
     assert (answer.file, answer.line) == (str(path), 5)
-    assert path.read_text(encoding='utf-8') == ARM.replace(
+    assert path.read_text() == ARM.replace(
         '5 0 0 0 0 0', '0 1.5 0 0 0 1.570796327')
     wait_for_x(observer, 0.0, 'fixture')
     assert load(path).pose('fixture')[:3] == (0.0, 1.5, 0.0)

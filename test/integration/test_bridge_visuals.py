@@ -68,8 +68,8 @@ def test_a_file_is_set_while_markers_are_made(listener, tmp_path):
                     '<link name="l"/></model></sdf>')
     including, small = tmp_path / 'including.sdf', tmp_path / 'small.sdf'
     including.write_text('<sdf version="1.10"><world name="w"><include><uri>slow.sdf</uri>'
-                         '</include></world></sdf>', encoding='utf-8')
-    small.write_text(crate(BALL), encoding='utf-8')
+                         '</include></world></sdf>')
+    small.write_text(crate(BALL))
     set_parameters(listener, sdf_file=str(including))
     slow.hold()
     arrays = arrays_of(listener)

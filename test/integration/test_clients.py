@@ -47,8 +47,8 @@ def start_client(request, start_program):
     return start
 
 
-@pytest.fixture(name='bridge', scope='module')
-def bridge_of_work_cell(start_shared_bridge):
+@pytest.fixture(scope='module')
+def bridge(start_shared_bridge):
     # With a rate a client asks again where the middleware has lost the first answer to it.
     return start_shared_bridge(
         sdf_file=EXAMPLES / 'work_cell.sdf', publish_rate=1.0).wait_until_started()

@@ -46,7 +46,7 @@ WORLD = f"""<sdf version="1.11"><world name="yard">
 @pytest.mark.skipif(not DRAKE.exists(), reason='needs Drake, which make drake installs')
 def test_links_are_where_a_simulator_has_them(start_bridge, tf, joints, tmp_path):
     path = tmp_path / 'yard.sdf'
-    path.write_text(WORLD, encoding='utf-8')
+    path.write_text(WORLD)
     program = Path(__file__).with_name('drake_world.py')
     simulator = Simulator(tf, prefix='')
     start_bridge(

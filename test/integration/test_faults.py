@@ -53,14 +53,14 @@ rclpy.spin(node)
 """
 
 
-@pytest.fixture(name='start')
-def start_with_file(start_bridge):
+@pytest.fixture
+def start(start_bridge):
     """Starts a bridge on a file; ``start(path)``."""
     return lambda path: start_bridge(sdf_file=path).wait_until_started()
 
 
-@pytest.fixture(name='listener')
-def tf_listener(start_listener):
+@pytest.fixture
+def listener(start_listener):
     listener = start_listener()
     listen_to_tf(listener)
     return listener
@@ -119,7 +119,7 @@ def test_a_config_map_that_is_replaced_is_noticed(listener, tmp_path):
     # As Kubernetes does: cell.sdf -> ..data/cell.sdf, and ..data -> a folder for each version.
     for version, x in (('..1', 1.5), ('..2', 2)):
         (tmp_path / version).mkdir()
-        (tmp_path / version / 'cell.sdf').write_text(world(x), encoding='utf-8')
+        (tmp_path / version / 'cell.sdf').write_text(world(x))
     (tmp_path / '..data').symlink_to('..1')
     (tmp_path / 'linked.sdf').symlink_to('..data/cell.sdf')
     set_parameters(listener, sdf_file=str(tmp_path / 'linked.sdf'))
@@ -246,7 +246,7 @@ def change_the_file(listener, file):
 
 def set_another_file(listener, file):
     other = file.with_name('other.sdf')
-    other.write_text(world(2), encoding='utf-8')
+    other.write_text(world(2))
     asked_to_set(listener, sdf_file=str(other))
 
 
@@ -288,7 +288,7 @@ sys.exit(run(sys.argv, 'bridge', reader))
 
 
 def test_the_joints_of_a_new_scene_are_followed_before_it_is_published(start_bridge, file):
-    file.write_text(ARM, encoding='utf-8')
+    file.write_text(ARM)
     bridge = start_bridge(program=TELLING, sdf_file=file, use_joint_states=True)
     bridge.wait_for_line('has done follow')
     replace(file, ARM.replace('upper', 'lower'))
@@ -321,7 +321,7 @@ ARM = """<sdf version="1.11"><model name="arm"><link name="base"/><link name="up
 
 def test_a_bridge_that_can_process_no_message_says_so_and_ends(
         start_bridge, make_node, file, listener):
-    file.write_text(ARM, encoding='utf-8')
+    file.write_text(ARM)
     senders = [
         make_node(name).create_publisher(JointState, 'joint_states', 10)
         for name in ('arm', 'gripper')]
@@ -434,7 +434,7 @@ def test_an_included_file_that_changes_during_the_load_is_read_again(listener, f
                 '<link name="body"/></model></sdf>')
 
     first = tmp_path / 'crate.sdf'
-    first.write_text(model('crate', 3), encoding='utf-8')
+    first.write_text(model('crate', 3))
     slow = SlowFile(tmp_path / 'slow.sdf', model('other', 0))
     replace(file, '<sdf version="1.10"><world name="w"><include><uri>crate.sdf</uri></include>'
             '<include><uri>slow.sdf</uri></include></world></sdf>')

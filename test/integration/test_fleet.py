@@ -26,11 +26,11 @@ def fleet(**robots):
     return f'<sdf version="1.11"><world name="shop">{includes}{FENCE}</world></sdf>'
 
 
-@pytest.fixture(name='file')
-def write_file(tmp_path):
-    (tmp_path / 'robot.sdf').write_text(ROBOT, encoding='utf-8')
+@pytest.fixture
+def file(tmp_path):
+    (tmp_path / 'robot.sdf').write_text(ROBOT)
     path = tmp_path / 'shop.sdf'
-    path.write_text(fleet(r1=10, r2=20, r3=30), encoding='utf-8')
+    path.write_text(fleet(r1=10, r2=20, r3=30))
     return path
 
 

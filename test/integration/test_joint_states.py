@@ -62,8 +62,8 @@ while True:
 MOVED = {'upper', 'slide', 'finger'}
 
 
-@pytest.fixture(name='follow')
-def make_follow(bridge, joints, tf):
+@pytest.fixture
+def follow(bridge, joints, tf):
     """Lets the bridge follow joints, and returns when it hears their publisher."""
     def follow(**parameters):
         set_parameters(tf.listener, use_joint_states=True, **parameters)

@@ -36,7 +36,7 @@ URDF = """\
 @pytest.fixture
 def sdf_file(tmp_path):
     path = tmp_path / 'arm.sdf'
-    path.write_text(FILE, encoding='utf-8')
+    path.write_text(FILE)
     return path
 
 
@@ -94,7 +94,7 @@ def test_arguments_win_over_the_params_file_and_leave_it_the_rest(
     params_file = tmp_path / 'params.yaml'
     params_file.write_text(
         f'{node}:\n  ros__parameters:\n    sdf_file: {sdf_file}\n    root_frame: map\n'
-        '    frame_prefix: from_file_\n    anchor_models: all\n', encoding='utf-8')
+        '    frame_prefix: from_file_\n    anchor_models: all\n')
     listener.listen_to_frames()
     namespace = '' if node == 'sdf_pose_bridge' else 'left'
     launch('bridge.launch.py', params_file=params_file, namespace=namespace, frame_prefix='a/')
@@ -136,7 +136,7 @@ def test_beside_robot_state_publisher_no_frame_has_two_parents(
     except PackageNotFoundError:
         pytest.skip('needs robot_state_publisher, which is not installed')
     urdf_file = tmp_path / 'arm.urdf'
-    urdf_file.write_text(URDF, encoding='utf-8')
+    urdf_file.write_text(URDF)
     listener.listen_to_frames()
     launch('beside_robot_state_publisher.launch.py', urdf_file=urdf_file, sdf_file=sdf_file)
     parents = wait_for_parents(listener, ['base', 'hand', 'cell/base', 'cell/tool'])

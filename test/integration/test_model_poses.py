@@ -26,13 +26,13 @@ TOPIC = '/tracker/{model}/pose'
 FILE_TEXT = WORLD.format(height=0.5)
 
 
-@pytest.fixture(name='tracker')
-def make_tracker(tf):
+@pytest.fixture
+def tracker(tf):
     return Tracker(tf)
 
 
-@pytest.fixture(name='follow')
-def make_follow(bridge, tf):
+@pytest.fixture
+def follow(bridge, tf):
     """Lets the bridge follow poses of models."""
     def follow(*topics, **parameters):
         set_parameters(tf.listener, model_pose_topics=list(topics or [TOPIC]), **parameters)

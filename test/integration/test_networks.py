@@ -84,8 +84,8 @@ def wait_for_link(hosts):
             what=lambda name=name: f'the cable of {name}')
 
 
-@pytest.fixture(name='hosts')
-def connected_namespaces(ros_domain):
+@pytest.fixture
+def hosts(ros_domain):
     """Names of the network namespaces of two hosts, "a" and "b"."""
     # Other tests have another domain, so also other names.
     hosts = {host: f'sdf_pose_bridge_{ros_domain}{host}' for host in ADDRESSES}
@@ -145,7 +145,7 @@ def test_a_link_that_is_cut_for_longer_than_the_lease_and_restored(
         hosts, start_bridge_on, start_listener_on, file, tmp_path, monkeypatch):
     share = get_package_share_directory('sdf_pose_bridge')
     (profile,) = [each for each in PROFILES if os.environ['ROS_DISTRO'] in each.distros]
-    text = Path(share, profile.file).read_text(encoding='utf-8')
+    text = Path(share, profile.file).read_text()
     short = tmp_path / 'profile.xml'
     short.write_text(text.replace('<leaseAnnouncement>', f'{LEASE}<leaseAnnouncement>'))
     monkeypatch.setenv(profile.variable, str(short))
@@ -163,7 +163,7 @@ def test_a_link_that_is_cut_for_longer_than_the_lease_and_restored(
 
 def test_a_late_joiner_on_another_host_gets_everything_in_whole_packets(
         hosts, start_bridge_on, start_listener_on, file):
-    file.write_text(world_with_many_frames(), encoding='utf-8')
+    file.write_text(world_with_many_frames())
     start_bridge_on('a')
     listener = start_listener_on('b', FRAMES)
     listener.wait_for_line(f'tree {FRAMES} 1.0')
@@ -180,7 +180,7 @@ def test_many_frames_arrive_whole_where_packets_are_lost(
                            'bytecode', LOSE_5_PERCENT]):
             if subprocess.run(['tc', '-n', host, *arguments], check=False).returncode:
                 pytest.skip('this machine has no BPF for tc')
-    file.write_text(world_with_many_frames(), encoding='utf-8')
+    file.write_text(world_with_many_frames())
     start_bridge_on('a')
     listener = start_listener_on('b', FRAMES)
     listener.wait_for_line(f'tree {FRAMES} 1.0')

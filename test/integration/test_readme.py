@@ -13,10 +13,10 @@ import pytest
 from sdf_pose_bridge.cli.main import main
 from sdf_pose_bridge_interfaces.srv import ConvertRotation
 
-README = (ROOT / 'README.md').read_text(encoding='utf-8')
-ROS_INTERFACE = (ROOT / 'docs/ros_interface.md').read_text(encoding='utf-8')
-COMMAND_LINE = (ROOT / 'docs/command_line.md').read_text(encoding='utf-8')
-ERRORS = (ROOT / 'docs/errors.md').read_text(encoding='utf-8')
+README = (ROOT / 'README.md').read_text()
+ROS_INTERFACE = (ROOT / 'docs/ros_interface.md').read_text()
+COMMAND_LINE = (ROOT / 'docs/command_line.md').read_text()
+ERRORS = (ROOT / 'docs/errors.md').read_text()
 BROKEN = """\
 <sdf version="1.10">
   <model name="gripper">
@@ -47,16 +47,16 @@ def shown_after(command, page=README):
     return [line.removeprefix('    ') for line in sample.splitlines()]
 
 
-@pytest.fixture(name='bridge', scope='module')
-def bridge_of_work_cell(start_shared_bridge):
+@pytest.fixture(scope='module')
+def bridge(start_shared_bridge):
     with pytest.MonkeyPatch.context() as monkeypatch:
         monkeypatch.chdir(ROOT)
         bridge = start_shared_bridge(sdf_file='examples/work_cell.sdf')
         return bridge.wait_until_started()
 
 
-@pytest.fixture(name='listener', scope='module')
-def listener_beside_it(bridge, start_shared_listener):
+@pytest.fixture(scope='module')
+def listener(bridge, start_shared_listener):
     return start_shared_listener()
 
 

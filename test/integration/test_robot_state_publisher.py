@@ -40,8 +40,8 @@ robot_state_publisher:
 """
 
 
-@pytest.fixture(name='start')
-def start_program(start_bridge):
+@pytest.fixture
+def start(start_bridge):
     return partial(start_bridge, program='robot_state_publisher')
 
 
@@ -55,8 +55,8 @@ def joints(listener):
     return JointPublisher(listener)
 
 
-@pytest.fixture(name='tf')
-def listen_to_frames(listener):
+@pytest.fixture
+def tf(listener):
     """Messages of ``/tf`` and ``/tf_static`` by these names."""
     found = {'/tf': [], '/tf_static': []}
     for name, quality in (('/tf', 100), ('/tf_static', latched(10))):
@@ -110,7 +110,7 @@ def test_links_have_the_parents_that_joints_name_once_these_are_reported(
 
 def test_a_file_of_parameters_is_taken_with_all_its_names(start, listener, tmp_path, tf):
     file = tmp_path / 'parameters.yaml'
-    file.write_text(PARAMETERS.format(text=URDF, ignores='false'), encoding='utf-8')
+    file.write_text(PARAMETERS.format(text=URDF, ignores='false'))
     program = start('--ros-args', '--params-file', file).wait_until_started()
     listener.wait(lambda: tf['/tf_static'], lambda: 'the fixed frame')
     assert not [line for line in program.lines if line.startswith('[WARN]')]

@@ -15,7 +15,7 @@ import pytest
 def listener(start_shared_bridge, start_shared_listener, tmp_path_factory):
     """Start a bridge, and a listener beside it."""
     path = tmp_path_factory.mktemp('policy') / 'cell.sdf'
-    path.write_text(world(1), encoding='utf-8')
+    path.write_text(world(1))
     start_shared_bridge(
         sdf_file=path, use_sim_time=True, allow_set_pose=True).wait_until_started()
     return start_shared_listener()

@@ -18,9 +18,9 @@ BLOCK = re.compile(r'^```(?P<kind>.*)\n(?::caption: (?P<caption>.*)\n\n)?(?P<tex
                    re.M)
 
 
-@pytest.fixture(name='steps', scope='module')
-def steps_of_the_page():
-    return [match.groupdict() for match in BLOCK.finditer(TUTORIAL.read_text(encoding='utf-8'))]
+@pytest.fixture(scope='module')
+def steps():
+    return [match.groupdict() for match in BLOCK.finditer(TUTORIAL.read_text())]
 
 
 def write(step):
@@ -36,8 +36,8 @@ def write(step):
     file.write_text(begin + step['text'] + line + end)
 
 
-@pytest.fixture(name='folder')
-def folder_of_the_reader(tmp_path, monkeypatch):
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

@@ -29,8 +29,8 @@ def make_executor(make_node):
         executor.shutdown()
 
 
-@pytest.fixture(name='node')
-def spinnable_node(make_node, make_executor):
+@pytest.fixture
+def node(make_node, make_executor):
     """Return a node that has an executor."""
     node = make_node('bridge')
     make_executor(node)

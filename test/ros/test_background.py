@@ -11,8 +11,8 @@ import pytest
 from sdf_pose_bridge.ros.background import Periodic, result_from_executor, Worker
 
 
-@pytest.fixture(name='worker')
-def make_worker(node):
+@pytest.fixture
+def worker(node):
     worker = Worker(node, 'worker')
     yield worker
     worker.end()

@@ -54,7 +54,7 @@ def test_a_failed_import_is_one_sentence(error, sentence):
 
 
 def test_the_readme_says_the_same_words():
-    assert LINK_COMMAND in (ROOT / 'README.md').read_text(encoding='utf-8')
+    assert LINK_COMMAND in (ROOT / 'README.md').read_text()
 
 
 # Each of these takes milliseconds to import, or what imports it does.

@@ -20,7 +20,7 @@ LIGHT = '<light name="i" type="point"><pose relative_to="x"/></light>'
 def status_of(make_node, tmp_path):
     def status(text, *failure, states=NOTHING_MISSING):
         path = tmp_path / 'cell.sdf'
-        path.write_text(text, encoding='utf-8')
+        path.write_text(text)
         node = make_node('bridge', '-p', f'sdf_file:={path}', '-p', 'root_frame:=map')
         loaded = loaded_scene_from_request(settings_from_node(node).load_request)
         return status_from_scene(

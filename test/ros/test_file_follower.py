@@ -18,7 +18,7 @@ HALF, LONGER_HALF = GOOD[:40], '\n' + GOOD[:50]
 @pytest.fixture
 def file(tmp_path):
     path = tmp_path / 'scene.sdf'
-    path.write_text(GOOD, encoding='utf-8')
+    path.write_text(GOOD)
     return path
 
 
@@ -51,9 +51,9 @@ def reported(follower, request_of_file):
 
 
 def test_a_failure_is_reported_once_the_file_no_longer_changes(follower, file, reported):
-    file.write_text(HALF, encoding='utf-8')
+    file.write_text(HALF)
     assert reported() == []
-    file.write_text(LONGER_HALF, encoding='utf-8')
+    file.write_text(LONGER_HALF)
     assert reported() == [], 'as it has changed again'
     (line,) = reported()
     assert f'{file}:2: ' in line
@@ -61,26 +61,26 @@ def test_a_failure_is_reported_once_the_file_no_longer_changes(follower, file, r
 
 
 def test_a_failure_that_occurs_twice_is_reported(file, reported):
-    file.write_text(HALF, encoding='utf-8')
+    file.write_text(HALF)
     assert reported() == []
-    file.write_text(f'{HALF} ', encoding='utf-8')
+    file.write_text(f'{HALF} ')
     assert len(reported()) == 1
 
 
 def test_a_failure_that_vanishes_is_not_reported(follower, file, reported):
-    file.write_text(HALF, encoding='utf-8')
+    file.write_text(HALF)
     assert reported() == []
-    file.write_text(GOOD, encoding='utf-8')
+    file.write_text(GOOD)
     assert reported() == []
     assert reported() == []
 
 
 def test_a_failure_is_reported_again_after_a_success(file, reported):
     for _ in range(2):
-        file.write_text(HALF, encoding='utf-8')
+        file.write_text(HALF)
         assert reported() == []
         assert len(reported()) == 1
-        file.write_text(GOOD, encoding='utf-8')
+        file.write_text(GOOD)
         assert reported() == []
 
 
@@ -94,7 +94,7 @@ def test_a_file_behind_an_error_is_followed(follower, tmp_path):
     path = tmp_path / 'included.sdf'
     follower.follow_also([str(path)])
     assert not follower.has_to_read()
-    path.write_text(GOOD, encoding='utf-8')
+    path.write_text(GOOD)
     assert follower.has_to_read()
     assert not follower.has_to_read()
 
@@ -102,7 +102,7 @@ def test_a_file_behind_an_error_is_followed(follower, tmp_path):
 def test_a_change_before_files_are_read_again_is_read_once(follower, file, monkeypatch):
     monkeypatch.setattr(file_follower, 'RETRY_PERIOD_S', 0.0)
     follower.retry_after(BUSY)
-    file.write_text(HALF, encoding='utf-8')
+    file.write_text(HALF)
     assert follower.has_to_read()
     follower.retry_after(BROKEN)
     assert not follower.has_to_read()

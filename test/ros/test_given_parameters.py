@@ -43,8 +43,8 @@ def given(make_node):
     return make
 
 
-@pytest.fixture(name='settings')
-def default_settings(given):
+@pytest.fixture
+def settings(given):
     return settings_from_node(given())
 
 
@@ -244,8 +244,8 @@ def test_a_value_with_the_same_meaning_is_converted(type_, value, wanted, conver
 
 # Services
 
-@pytest.fixture(name='node')
-def node_with_parameters(make_node):
+@pytest.fixture
+def node(make_node):
     node = make_node('bridge')
     node.declare_parameter('a', 3.5)
     node.declare_parameter('b', ['x', 'y'])

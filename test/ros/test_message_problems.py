@@ -13,8 +13,8 @@ from sdf_pose_bridge.ros.model_poses import messages_from_poses
 from sdf_pose_bridge.ros.state_messages import StateSource
 
 
-@pytest.fixture(name='look')
-def make_look(make_node):
+@pytest.fixture
+def look(make_node):
     """
     Sends messages and returns the lines about publishers; ``look(*periods)``.
 

@@ -20,8 +20,8 @@ from sdf_pose_bridge.ros.state_topic import StateTopic, TopicKey
 from sdf_pose_bridge.tf.odometry import Odometry
 
 
-@pytest.fixture(name='models')
-def make_models(make_node):
+@pytest.fixture
+def models(make_node):
     return Models(make_node('bridge'))
 
 

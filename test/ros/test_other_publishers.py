@@ -77,8 +77,8 @@ class Looking:
         return [*self.found.problems.values()]
 
 
-@pytest.fixture(name='looking')
-def make_looking(make_node, make_executor, beside):
+@pytest.fixture
+def looking(make_node, make_executor, beside):
     node, other = make_node('bridge'), make_node('other')
     found = Looking(node, other, make_executor(node, other), beside)
     found.publish()

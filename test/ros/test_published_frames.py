@@ -43,8 +43,8 @@ def tree_of_frames(*names):
     return tree_of(WORLD.format(''.join(f'<frame name="{name}"/>' for name in names)))
 
 
-@pytest.fixture(name='publish')
-def make_publish(node):
+@pytest.fixture
+def publish(node):
     """Publishes frames and pose topics; ``publish(names, topics)``."""
     publishers = Publishers(node)
 
@@ -150,8 +150,8 @@ def report_position(frames, stamp_ns):
     positions.update(positions.selection(['turn']), np.zeros(1), stamp_ns)
 
 
-@pytest.fixture(name='poses')
-def listen_to_poses(node, make_node):
+@pytest.fixture
+def poses(node, make_node):
     """The names and stamps of the poses that arrive."""
     listener, found = make_node('listener'), []
     for name in ('upper', 'base'):
@@ -235,8 +235,8 @@ def test_what_a_joint_without_a_position_moves_is_not_published(node, poses):
     assert [each.child_frame_id for each in transforms].count('upper') == 1
 
 
-@pytest.fixture(name='qualities')
-def publish_arm(make_executor, beside):
+@pytest.fixture
+def qualities(make_executor, beside):
     """Publishes the frames of an arm; returns the quality of service of each topic."""
     def publish(node):
         frames = frames_of_arm(Publishers(node))

@@ -28,15 +28,15 @@ LINK = """<link name="l"><pose>1 0 0 0 0 0</pose>
   <visual name="v"><geometry><box/></geometry></visual></link>"""
 
 
-@pytest.fixture(name='path')
-def write_file(tmp_path):
+@pytest.fixture
+def path(tmp_path):
     path = tmp_path / 'cell.sdf'
-    path.write_text(model_file(LINK), encoding='utf-8')
+    path.write_text(model_file(LINK))
     return path
 
 
-@pytest.fixture(name='request_of_file')
-def make_request(path):
+@pytest.fixture
+def request_of_file(path):
     return LoadRequest(str(path), '')
 
 
@@ -71,7 +71,7 @@ def test_markers_come_from_it_and_changes_are_written_there(reader, request_of_f
     assert marker.type == 'CUBE'
     change = result(reader, loaded.request, *change_of(loaded))
     assert '+<sdf' in change.diff or '<pose>2 0 0 0 0 0' in change.diff
-    assert path.read_text(encoding='utf-8') == model_file(LINK).replace('1 0 0', '2 0 0')
+    assert path.read_text() == model_file(LINK).replace('1 0 0', '2 0 0')
 
 
 def test_all_errors_of_a_file_arrive(reader, path, request_of_file):

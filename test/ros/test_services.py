@@ -183,10 +183,10 @@ ARM = model_file(
             '<axis><xyz>0 0 1</xyz></axis>', 'turn', 'revolute'))
 
 
-@pytest.fixture(name='path')
-def make_path(tmp_path):
+@pytest.fixture
+def path(tmp_path):
     path = tmp_path / 'cell.sdf'
-    path.write_text(ARM, encoding='utf-8')
+    path.write_text(ARM)
     return path
 
 
@@ -228,8 +228,8 @@ def call(_request, function, *arguments):
     return function(*arguments)
 
 
-@pytest.fixture(name='ask')
-def make_ask(make_node, path):
+@pytest.fixture
+def ask(make_node, path):
     settings = settings_from_node(make_node(
         'bridge', '-p', f'sdf_file:={path}', '-p', 'use_joint_states:=true'))
     loaded = loaded_scene_from_request(settings.load_request)
@@ -254,7 +254,7 @@ def test_the_answer_has_the_file_and_the_frames_that_move(ask, path):
     assert (response.file, response.line) == (str(path), 1)
     assert '+<sdf' in response.diff
     assert response.moved_frames == ['on_mark']
-    assert path.read_text(encoding='utf-8') == ARM.replace('2 0 0 0 0 0', '3 0 0 0 0 0')
+    assert path.read_text() == ARM.replace('2 0 0 0 0 0', '3 0 0 0 0 0')
 
 
 def test_a_frame_that_moves_is_set_where_it_is_now(ask, path):
@@ -266,12 +266,12 @@ def test_a_frame_that_moves_is_set_where_it_is_now(ask, path):
 def test_a_frame_that_a_joint_moves_away_is_refused(ask, path):
     with pytest.raises(SdfError, match='a joint has moved "m::tool" away from "m"'):
         ask('tool', (0.0, 1.0, 0.0))
-    assert path.read_text(encoding='utf-8') == ARM
+    assert path.read_text() == ARM
 
 
 def test_a_dry_run_writes_nothing(ask, path):
     assert ask('mark', (3.0, 0.0, 0.0), dry_run=True).diff
-    assert path.read_text(encoding='utf-8') == ARM
+    assert path.read_text() == ARM
 
 
 @pytest.mark.parametrize(('frame', 'xyz', 'quat_xyzw', 'frame_id', 'reason'), [
@@ -285,7 +285,7 @@ def test_a_dry_run_writes_nothing(ask, path):
 def test_a_wrong_request_is_refused(ask, path, frame, xyz, quat_xyzw, frame_id, reason):
     with pytest.raises(SdfError, match=reason):
         ask(frame, xyz, quat_xyzw, frame_id)
-    assert path.read_text(encoding='utf-8') == ARM
+    assert path.read_text() == ARM
 
 
 def test_a_text_that_is_no_file_is_refused():

@@ -43,8 +43,8 @@ def make_simulator(node):
     found.end()
 
 
-@pytest.fixture(name='service')
-def make_service(node, make_node):
+@pytest.fixture
+def service(node, make_node):
     """Starts a service; ``service(names, states)`` returns the requests."""
     server = make_node('sim')
     node.executor.add_node(server)
@@ -140,8 +140,8 @@ def test_answers_that_take_long_are_asked_for_less_often(
 
 # What the answers say
 
-@pytest.fixture(name='answer')
-def make_answer(node, simulator):
+@pytest.fixture
+def answer(node, simulator):
     """Takes an answer about models; ``answer(*names)`` returns the values of each message."""
     models = Models(node)
     simulator.follow(models.positions, settings_from_values(

@@ -6,8 +6,8 @@ from moving_models import Models
 import pytest
 
 
-@pytest.fixture(name='models')
-def make_models(make_node):
+@pytest.fixture
+def models(make_node):
     return Models(make_node('bridge'))
 
 

@@ -52,8 +52,8 @@ class Sources:
         wait_until(lambda: self.types() == expected, search, self.types)
 
 
-@pytest.fixture(name='sources')
-def make_sources(node, make_node, beside):
+@pytest.fixture
+def sources(node, make_node, beside):
     found = Sources(node, make_node('other'), beside)
     found.follow(TOPICS, SETTINGS, POSITIONS)
     yield found

@@ -44,13 +44,13 @@ class Robots:
         return StateTopic(self._node, TopicKey(name, model, JOINT_STATE))
 
 
-@pytest.fixture(name='robots')
-def make_robots(make_node):
+@pytest.fixture
+def robots(make_node):
     return Robots(make_node('bridge'), UnreportedJoints.NONE)
 
 
-@pytest.fixture(name='read')
-def make_read(robots):
+@pytest.fixture
+def read(robots):
     """Reads a message on the topic of the robot ``a`` of two; ``read(data)``."""
     topic = robots.topic()
 

@@ -22,7 +22,7 @@ def test_shapes_of_the_scene_before_are_no_longer_read_and_not_shown(
     scenes = []
     for shape in ('box', 'sphere'):
         path = tmp_path / f'{shape}.sdf'
-        path.write_text(SDF.format(shape=shape), encoding='utf-8')
+        path.write_text(SDF.format(shape=shape))
         scenes.append(loaded_scene_from_request(LoadRequest(str(path), '')))
     old, new = scenes
     visuals = VisualPublisher(node, reader, old)

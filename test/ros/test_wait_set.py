@@ -12,20 +12,20 @@ from std_msgs.msg import String
 from sdf_pose_bridge.ros.wait_set import NoExecutor, WaitSet
 
 
-@pytest.fixture(name='node')
-def waiting_node(make_node):
+@pytest.fixture
+def node(make_node):
     return make_node('waiting')
 
 
-@pytest.fixture(name='wait_set')
-def make_wait_set(node):
+@pytest.fixture
+def wait_set(node):
     found = WaitSet(node.context)
     yield found
     found.close()
 
 
-@pytest.fixture(name='subscription')
-def make_subscription(node):
+@pytest.fixture
+def subscription(node):
     return node.create_subscription(
         String, 'text', lambda _: None, 10, callback_group=NoExecutor(), raw=True)
 

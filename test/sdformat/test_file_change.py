@@ -94,8 +94,8 @@ def set_attribute(path, name, value):
         pytest.skip(f'the file system of {path} does not have {name}: {error.strerror}')
 
 
-@pytest.fixture(name='path')
-def make_file(tmp_path):
+@pytest.fixture
+def path(tmp_path):
     path = tmp_path / 'cell.sdf'
     path.write_bytes(b'the old text')
     return path

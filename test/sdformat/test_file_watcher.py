@@ -16,7 +16,7 @@ LATER = 10 ** 19
 @pytest.fixture
 def path(tmp_path):
     path = tmp_path / 'a.sdf'
-    path.write_text('old', encoding='utf-8')
+    path.write_text('old')
     return path
 
 
@@ -32,12 +32,12 @@ def watching(path, read_since_ns=LATER):
 
 
 def rewrite(path):
-    path.write_text('longer', encoding='utf-8')
+    path.write_text('longer')
 
 
 def replace(path):
     new = path.with_suffix('.new')
-    new.write_text('new', encoding='utf-8')
+    new.write_text('new')
     new.replace(path)
 
 
@@ -49,7 +49,7 @@ def replace_keeping_size_and_time(path):
 
 def rewrite_keeping_size_and_time(path):
     status = path.stat()
-    path.write_text('new', encoding='utf-8')
+    path.write_text('new')
     os.utime(path, ns=(status.st_atime_ns, status.st_mtime_ns))
 
 
@@ -63,7 +63,7 @@ def forbid(path):
 
 def become_a_link(path):
     other = path.with_name('b.sdf')
-    other.write_text('old', encoding='utf-8')
+    other.write_text('old')
     path.unlink()
     path.symlink_to(other)
 
@@ -94,7 +94,7 @@ def test_a_file_that_appears_is_noticed(tmp_path):
 
 def test_a_link_that_points_elsewhere_is_noticed(tmp_path, path):
     link, other = tmp_path / 'link.sdf', tmp_path / 'other.sdf'
-    other.write_text('old', encoding='utf-8')
+    other.write_text('old')
     link.symlink_to(path)
     watcher = watching(link)
     link.unlink()

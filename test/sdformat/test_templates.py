@@ -50,7 +50,7 @@ def test_the_error_tells_the_command(tmp_path, name, command):
     for existing in ('old.urdf', 'expanded_old.urdf'):
         (tmp_path / existing).touch()
     write = sdf if '.sdf' in name else urdf
-    path.write_text(write('<link name="${a}"/>'), encoding='utf-8')
+    path.write_text(write('<link name="${a}"/>'))
     (error,) = errors_of_file(path)
     assert error.message.endswith(f': {command}')
 
@@ -62,10 +62,10 @@ def test_for_a_text_there_is_no_command():
 
 
 def test_an_included_file_is_refused_too(tmp_path):
-    (tmp_path / 'arm.sdf').write_text(sdf('<link name="${a}"/>'), encoding='utf-8')
+    (tmp_path / 'arm.sdf').write_text(sdf('<link name="${a}"/>'))
     path = tmp_path / 'cell.sdf'
     path.write_text('<sdf version="1.10"><world name="w"><include><uri>arm.sdf</uri></include>'
-                    '</world></sdf>', encoding='utf-8')
+                    '</world></sdf>')
     (error,) = errors_of_file(path)
     assert (error.file, error.line) == (str(tmp_path / 'arm.sdf'), 2)
 
@@ -102,7 +102,7 @@ def test_location_of_a_mesh_hides_nothing_else(content, found):
 
 
 def test_location_of_a_mesh_in_a_file_for_xacro_is_refused(tmp_path):
-    (tmp_path / 'm.sdf.xacro').write_text(sdf(MESH), encoding='utf-8')
+    (tmp_path / 'm.sdf.xacro').write_text(sdf(MESH))
     (error,) = errors_of_file(tmp_path / 'm.sdf.xacro')
     assert error.code == 'PARSING_ERROR'
 

@@ -82,7 +82,7 @@ def test_white_space_of_python_is_in_no_other_module():
     calls = [
         f'{path.name}:{call.lineno}' for path in modules
         if path.stem not in ('gazebo_topics', 'grammar', 'specification')
-        for call in ast.walk(ast.parse(path.read_text(encoding='utf-8')))
+        for call in ast.walk(ast.parse(path.read_text()))
         if isinstance(call, ast.Call) and isinstance(call.func, ast.Attribute) and not call.args
         and call.func.attr in ('isspace', 'lstrip', 'rsplit', 'rstrip', 'split', 'strip')]
     assert calls == []

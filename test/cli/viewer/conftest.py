@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import pytest
 
 
-@pytest.fixture(name='process', scope='session')
-def process_for_meshes():
+@pytest.fixture(scope='session')
+def process():
     from sdf_pose_bridge.limited_process import LimitedProcess
     process = LimitedProcess()
     yield process

@@ -31,8 +31,8 @@ TEXT = f"""<sdf version="1.11"><world name="w"><model name="m"><pose>1 2 3 0 0 1
   <frame name="{html.escape(HOSTILE)}"/></world></sdf>"""
 
 
-@pytest.fixture(name='scene')
-def loaded_scene():
+@pytest.fixture
+def scene():
     return load_text(TEXT.encode(), 'cell.sdf')
 
 

@@ -201,8 +201,8 @@ def test_gltf_with_a_buffer_beside_it(mesh, tmp_path):
     assert extent(mesh('mesh.gltf', mesh_texts.gltf())) == pytest.approx((1, 2, 0))
 
 
-@pytest.fixture(name='reader')
-def reader_with_short_name(mesh_reader):
+@pytest.fixture
+def reader(mesh_reader):
     return mesh_reader
 
 
