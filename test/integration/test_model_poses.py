@@ -2,11 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A bridge that follows poses of models, beside a process that publishes them and listens."""
 
-import itertools
 import math
 import sys
 
-from builtin_interfaces.msg import Time
 from changes import call, listen_to_tf, pose_of, reload, replace, set_parameters
 from folders import EXAMPLES
 from geometry_msgs.msg import (
@@ -16,7 +14,6 @@ from geometry_msgs.msg import (
 )
 from nav_msgs.msg import Odometry
 import pytest
-from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 from tracker import CART, stamped, Tracker, WORLD
 
@@ -81,23 +78,6 @@ def test_a_tracker_may_come_late_stop_and_come_back_with_another_type(follow, tf
     tf.listener.wait(lambda: not tf.listener.node.count_publishers(CART), lambda: 'its end')
     assert pose_of(tf, 'cart').x == 3.0
     tracker.move(4.0, message_type=Odometry)
-
-
-def test_older_poses_count_after_simulated_time_has_jumped_back(follow, tf, tracker):
-    follow(use_sim_time=True)
-    clock = tf.listener.node.create_publisher(Clock, '/clock', 10)
-
-    for sec, x in ((2000, 3.0), (10, 4.0)):
-        times = itertools.count(sec)
-
-        def is_moved(times=times, x=x):
-            clock.publish(Clock(clock=Time(sec=next(times))))
-            # Without a stamp, a pose has the time of the node.
-            tracker.publish(stamped(PoseStamped, 0, x))
-            return 'cart/deck' in tf.last and tf.last['cart/deck'].transform.translation.x == x
-
-        tf.listener.wait(is_moved, lambda: tf.last)
-    assert tf.last['cart/deck'].header.stamp.sec < 2000
 
 
 def test_many_poses_of_hostile_names_delay_no_look_up(follow, tf, tracker):

@@ -148,7 +148,6 @@ def test_poses_can_be_replaced(rows):
 
 
 def joint_state(names, positions, *, frame_id='', sec=0, nanosec=0, velocities=()):
-    pytest.importorskip('rclpy', reason='needs ROS 2')
     made = JointState(name=names, position=positions, velocity=velocities)
     made.header.frame_id = frame_id
     made.header.stamp.sec, made.header.stamp.nanosec = sec, nanosec
@@ -225,7 +224,6 @@ POSE = (1.0, 2.0, 3.0, 0.5, -0.5, 0.5, -0.5)
 
 def pose_message(type_name, frame_id, child='', pose=POSE, sec=7):
     """Return a serialized message with one pose, or with two equal ones, and the first of them."""
-    pytest.importorskip('rclpy', reason='needs ROS 2')
     package, _, name = type_name.split('/')
     one = message = getattr(importlib.import_module(f'{package}.msg'), name)()
     if hasattr(message, 'transforms'):

@@ -28,6 +28,10 @@ def status_of(make_node, tmp_path):
     return status
 
 
+def values_of(status):
+    return {value.key: value.value for value in status.values}
+
+
 def with_lights(count):
     lights = ''.join(LIGHT.replace('"i"', f'"i{number}"') for number in range(count))
     return GOOD.replace('<link name="l"/>', f'<link name="l">{lights}</link>')
@@ -51,7 +55,7 @@ def test_joints_that_nobody_reports_are_a_warning(status_of):
     assert status.level == DiagnosticStatus.WARN
     assert status.message.startswith(
         'no message has named 2 joints yet, for example "arm/elbow";')
-    values = {value.key: value.value for value in status.values}
+    values = values_of(status)
     assert values['joints not reported'] == '2'
     assert values['first joint not reported'] == 'arm/elbow'
 
@@ -59,8 +63,7 @@ def test_joints_that_nobody_reports_are_a_warning(status_of):
 def test_messages_with_old_stamps_are_a_warning(status_of):
     status = status_of(GOOD, states=StateReport(problems=['from /a', 'from /b']))
     assert (status.level, status.message) == (DiagnosticStatus.WARN, 'from /a; from /b')
-    values = {value.key: value.value for value in status.values}
-    assert values['problems of topics'] == '2'
+    assert values_of(status)['problems of topics'] == '2'
 
 
 def test_a_failed_load_is_an_error_whatever_is_served(status_of):
@@ -72,7 +75,7 @@ def test_a_failed_load_is_an_error_whatever_is_served(status_of):
 
 def test_the_values_describe_what_is_served_and_what_is_wrong(status_of, tmp_path):
     status = status_of(GOOD, 'first', 'second')
-    values = {value.key: value.value for value in status.values}
+    values = values_of(status)
     assert values.pop('time to load').endswith(' ms')
     assert values == {
         'file': str(tmp_path / 'cell.sdf'), 'root frame': 'map', 'frames': '2', 'transforms': '1',

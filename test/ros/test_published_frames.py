@@ -145,9 +145,16 @@ def frames_of_arm(publishers, before=None, unreported=UnreportedJoints.ZERO, pos
         {'upper': 'upper', 'base': 'base'}, before)
 
 
-def report_position(frames, stamp_ns):
+def report_position(frames):
+    """Report the position of the joint, with the stamp (5, 6)."""
     positions = frames.moving.positions
-    positions.update(positions.selection(['turn']), np.zeros(1), stamp_ns)
+    positions.update(positions.selection(['turn']), np.zeros(1), 5_000_000_006)
+
+
+def seconds_of(message):
+    """Return the seconds and nanoseconds of a stamp."""
+    stamp = message.header.stamp
+    return stamp.sec, stamp.nanosec
 
 
 @pytest.fixture
@@ -157,7 +164,7 @@ def poses(node, make_node):
     for name in ('upper', 'base'):
         listener.create_subscription(
             PoseStamped, f'/bridge/poses/{name}',
-            lambda pose, name=name: found.append((name, pose.header.stamp)), LATCHED)
+            lambda pose, name=name: found.append((name, seconds_of(pose))), LATCHED)
     node.executor.add_node(listener)
     return found
 
@@ -189,35 +196,32 @@ def test_moving_frames_are_not_published_with_the_fixed_ones(node, poses):
 def test_poses_have_the_stamps_of_the_tree_and_of_the_joints(node, poses):
     publishers = Publishers(node)
     frames = frames_of_arm(publishers)
-    report_position(frames, 5_000_000_006)
+    report_position(frames)
     # The time of the node goes on before anything is published.
     assert frames.stamp_ns < publishers.now_ns()
     publish_topics(frames)
     spin_until(node, lambda: {'upper', 'base'} <= dict(poses).keys(), poses)
-    stamps = {name: (stamp.sec, stamp.nanosec) for name, stamp in poses}
-    assert stamps == {'base': divmod(frames.stamp_ns, 10**9), 'upper': (5, 6)}
+    assert dict(poses) == {'base': divmod(frames.stamp_ns, 10**9), 'upper': (5, 6)}
 
 
 def test_poses_in_a_frame_that_moves_have_the_stamp_of_its_joints(node, poses):
     frames = frames_of_arm(Publishers(node), pose_frame='upper')
-    report_position(frames, 5_000_000_006)
+    report_position(frames)
     publish_topics(frames)
     spin_until(node, lambda: 'base' in dict(poses), poses)
-    stamp = dict(poses)['base']
-    assert (stamp.sec, stamp.nanosec) == (5, 6)
+    assert dict(poses)['base'] == (5, 6)
 
 
 def test_what_waits_for_tf_keeps_its_stamp_while_topics_are_published(node, poses):
     frames, found = frames_of_arm(Publishers(node)), []
-    report_position(frames, 5_000_000_006)
+    report_position(frames)
     node.create_subscription(TFMessage, '/tf', found.append, 10)
     rows = frames.moving.stamp(np.array([0]), 7_000_000_008)
     publish_topics(frames)
     spin_until(node, lambda: 'upper' in dict(poses), poses)
     frames.moving.publish_tf(rows)
     spin_until(node, lambda: found, found)
-    stamp = found[0].transforms[0].header.stamp
-    assert (stamp.sec, stamp.nanosec) == (7, 8)
+    assert seconds_of(found[0].transforms[0]) == (7, 8)
 
 
 def test_what_a_joint_without_a_position_moves_is_not_published(node, poses):
@@ -227,7 +231,7 @@ def test_what_a_joint_without_a_position_moves_is_not_published(node, poses):
     publish_topics(before)
     spin_until(node, lambda: 'base' in dict(poses), poses)
     assert 'upper' not in dict(poses)
-    report_position(before, 5_000_000_006)
+    report_position(before)
     before.moving.publish_topics(only_listeners=False)
     spin_until(
         node, lambda: 'upper' in dict(poses)
