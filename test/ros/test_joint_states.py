@@ -350,6 +350,7 @@ def test_nothing_of_the_frames_before_is_published_once_others_are_followed(arm)
     arm.wait(begins.is_set)
     arm.follow(arm.frames_of(), TOPICS, EACH)
     count = len(published)
+    goes_on.set()
     arm.send(FIRST + 1, {'turn': 0.5})
     arm.wait(lambda: FIRST + 1 in arm.secs())
     assert len(published) == count == 1
