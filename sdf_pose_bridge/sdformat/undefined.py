@@ -139,15 +139,13 @@ class UndefinedReporter:
 
     def _outer_holder(self, tag: str, xml: XmlElement) -> list[str]:
         """Return the nearest element around an element that can hold another one."""
-        definition: Definition | None = definition_of(self._root, has_frames=True)
+        definition = definition_of(self._root, has_frames=True)
         holder, holders = self._root, list[str]()
         for outer in reversed([*with_ancestors(xml)][:-1]):
-            if definition is None:
-                break
             if tag in definition.children:
                 holders = [f'<{holder}>']
             holder = written_tag(outer)
-            definition = definition.children.get(outer.tag)
+            definition = definition.children.get(outer.tag, definition)
         return holders
 
 

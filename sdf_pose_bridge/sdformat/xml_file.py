@@ -246,9 +246,7 @@ def _parsed(text: bytes, path: str) -> XmlElement:
         # libxml2 reports a missing end behind the last line break.
         last_line = text.count(b'\n') + (not text.endswith(b'\n'))
         raise FileReadError(msg, Place(path, min(errors[0].line, last_line)))
-    if root is None:
-        msg = 'this is not XML: it has no element'
-        raise FileReadError(msg, Place(path))
+    assert root is not None
     if len(parser.error_log) >= _MOST_ERRORS:
         _check_with_expat(text, path)
     return root

@@ -56,11 +56,8 @@ def first_children(xml: XmlElement) -> dict[object, XmlElement]:
 
 def written_tag(xml: XmlElement) -> str:
     """Return the tag of an element as it is written, with its prefix."""
-    tag = str(xml.tag)
-    if not tag.startswith('{'):
-        return tag
-    local = tag[tag.index('}') + 1:]
-    return f'{xml.prefix}:{local}' if xml.prefix else local
+    # Only "xml" is a prefix for lxml, as name spaces are removed from texts.
+    return f'{xml.prefix}:{etree.QName(xml).localname}' if xml.prefix else str(xml.tag)
 
 
 def is_foreign(xml: XmlElement) -> bool:

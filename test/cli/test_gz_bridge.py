@@ -57,6 +57,15 @@ def test_a_topic_that_cannot_be_bridged_has_a_comment_with_the_reason(run_main):
             in run_main('gz_bridge', 'two.sdf').stdout)
 
 
+def test_a_topic_of_several_robots_has_a_comment_that_names_them(run_main, files):
+    shared = '<link name="l"><sensor name="s" type="imu"><topic>/i</topic></sensor></link>'
+    (files / 'two.sdf').write_text(world_file(''.join(
+        f'<model name="{name}">{shared}</model>' for name in 'ab')))
+    assert ('# the topic /i belongs to "a::l::s", "b::l::s", so it has messages of all; give each '
+            'a topic of its own in the file\n- ros_topic_name: "/i"'
+            in run_main('gz_bridge', 'two.sdf').stdout)
+
+
 def test_sensors_of_urdf_are_in_the_links_that_gazebo_keeps(parsed, files):
     mass = ('<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
             '</inertial>')

@@ -10,6 +10,7 @@ import subprocess
 from command_line import COMMAND, ENVIRONMENT
 from deadline import DEADLINE_S
 import pytest
+from sdf_texts import model_file
 
 from sdf_pose_bridge import SdfError
 from sdf_pose_bridge.cli.loading import load_file, scene_of
@@ -45,6 +46,12 @@ def test_a_long_load_is_told_on_a_terminal(files):
 def test_a_path_that_the_shell_left_as_it_is_has_a_cure(options, path, cure):
     _, (error,), _ = load_file(path, options('good.sdf'))
     assert cure in error.message
+
+
+def test_frames_that_would_share_an_id_are_found_by_their_names_in_sdf(run_on):
+    clash = model_file('<link name="a/b"/><model name="a"><link name="b"/></model>')
+    done = run_on(clash, 'set', '--dry-run', 'm::a::b', *'100000')
+    assert (done.returncode, done.stderr) == (0, '')
 
 
 def test_warnings_about_gazebo_are_counted(run_main, files):

@@ -8,7 +8,7 @@ import pytest
 from sdf_texts import fixed_joint, model_file, posed, world_file, write_files
 import urdf_texts
 
-from sdf_pose_bridge import load, Pose
+from sdf_pose_bridge import load, Pose, Scene
 from sdf_pose_bridge.errors import PoseNotSetError
 from sdf_pose_bridge.geometry.poses import canonical_relative_pose
 from sdf_pose_bridge.scene.pose_setting import pose_change
@@ -155,6 +155,10 @@ def test_a_pose_that_parameters_forbid_is_refused(change, tmp_path, params, reas
     (MODEL, '__root__', '', 'all others are placed'),
     (world_file('<actor name="a"><skin><filename>a.dae</filename></skin></actor>'), 'a', '',
      'it is an actor'),
+    (model_file(
+        '<link name="a"><inertial auto="true"/><collision name="c"><density>1</density><geometry>'
+        '<box><size>1 1 1</size></box></geometry></collision></link>'), 'm::a::inertial', '',
+     'computed from the collisions'),
     (f'<robot name="m">{urdf_texts.link("a")}</robot>', 'm::a', '', 'no <origin> of a joint'),
     (ROBOT, 'r::eye', 'r::optical', 'no <origin> of a joint'),
     (MODEL.replace('1.9', '1.3').replace('relative_to="a"', ''), 'm::a', '', 'SDFormat 1.3'),
@@ -163,6 +167,16 @@ def test_what_no_pose_can_say_is_refused(change, tmp_path, text, name, relative_
     write_files(tmp_path, m=text)
     with pytest.raises(PoseNotSetError, match=reason):
         change(name, relative_to)
+
+
+def test_a_file_that_has_changed_since_it_was_read_is_refused(tmp_path):
+    write_files(tmp_path, m=MODEL)
+    path = str(tmp_path / 'm.sdf')
+    scene = load(path)
+    write_files(tmp_path, m=MODEL.replace('1 0 0 0 0 0', '2 0 0 0 0 0'))
+    with pytest.raises(PoseNotSetError, match='has changed since it was read'):
+        pose_change(scene, scene.index('m::a'), ASKED, Scene.pose_of,
+                    lambda texts: load(path, texts=texts))
 
 
 def test_a_file_of_the_cache_of_fuel_is_refused(change, tmp_path, monkeypatch):

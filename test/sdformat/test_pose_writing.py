@@ -84,6 +84,7 @@ def test_a_new_pose_is_indented_like_a_child(old, new):
     (model_file('<link name="l"><pose>0 0 0</pose></link>'), 'a pose has 6 values'),
     (model_file('<link name="l"><pose degrees="true" rotation_format="quat_xyzw"/></link>'),
      'cannot be combined'),
+    (model_file('<link name="l"><inertial/></link>'), 'is not written as <pose>, but in'),
     (model_file('<link name="R&D"><pose>0 0 0 0 0 0</pose></link>'), 'not well-formed'),
 ])
 def test_other_texts_are_refused(text, reason):

@@ -97,6 +97,12 @@ def test_line_of_a_warning(line):
     assert warning.place.line == line
 
 
+def test_many_warnings_end_with_the_number_of_those_not_kept():
+    scene = load_text(model_file('<link name="l">' + '<pose/>\n' * 131 + '</link>'))
+    assert [each.place.line for each in scene.warnings] == [*range(2, 102), 0]
+    assert scene.warnings[-1].message == 'and 30 more warnings'
+
+
 def test_line_of_broken_xml_in_a_long_file():
     assert only_error(model_file(LINES + '<link name="l"></lynk>')).line == 70_001
 

@@ -188,6 +188,13 @@ def test_pose_of_a_nested_link_can_be_relative_to_a_name_in_the_new_model():
     assert scene.pose('m::n::l')[:3] == (1.0, 5.0, 0.0)
 
 
+def test_attachment_of_a_nested_frame_is_to_the_name_in_the_new_model():
+    scene = load_text(world(
+        '<link name="n::l"><pose>5 0 0 0 0 0</pose></link>'
+        '<frame name="n::f" attached_to="n::l"/>'))
+    assert scene.pose('m::n::f').x == 5.0
+
+
 def test_names_with_the_separator_are_refused_in_newer_files():
     assert set(codes_of(world(NESTED, '1.8'))) == {'RESERVED_NAME'}
 

@@ -112,7 +112,7 @@ def test_first_child_is_the_first_of_its_tag():
 
 @pytest.mark.parametrize(('text', 'tag'), [
     ('<a/>', 'a'), ('<x:a/>', 'x:a'), ('<x:y:a/>', 'x:y:a'), ('<x:a xmlns:x="urn:x"/>', 'x:a'),
-    ('<a xmlns="urn:x"/>', 'a'),
+    ('<a xmlns="urn:x"/>', 'a'), ('<xml:a/>', 'xml:a'),
 ])
 def test_tag_as_it_is_written(text, tag):
     assert written_tag(xml(text)) == tag

@@ -54,6 +54,13 @@ def test_a_text_has_the_name_of_its_parameter_and_no_file():
         loaded_scene_from_request(LoadRequest('', '<sdf>\n<'))
 
 
+def test_a_name_for_the_model_of_a_world_has_no_effect():
+    loaded = loaded_scene_from_request(LoadRequest('', world_file(GOOD), model_name='robot7'))
+    assert loaded.scene.has('m::l')
+    (warning,) = loaded.warnings
+    assert 'model_name has no effect' in warning.message
+
+
 @pytest.mark.parametrize('text', [TEXT, TEXT.encode(), TEXT.encode('utf-8-sig')])
 def test_a_text_stays_as_it_is(text):
     assert unicode_text(text) == TEXT

@@ -16,12 +16,11 @@ from typing import NamedTuple, TypeAlias
 
 from lxml import etree
 
-from sdf_pose_bridge.errors import AttributeInvalidError, MergeIncludeError
+from sdf_pose_bridge.errors import MergeIncludeError
 from sdf_pose_bridge.names import (
     MODEL_FRAME,
     PROXY_END,
     PROXY_START,
-    ROOT_FRAME,
     WORLD_FRAME,
 )
 from sdf_pose_bridge.sdformat.grammar import (
@@ -29,7 +28,6 @@ from sdf_pose_bridge.sdformat.grammar import (
     definition_of,
     Kind,
     PARTS_OF_MODEL,
-    ValueType,
 )
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import (
@@ -115,10 +113,6 @@ def _proxy_frame(
         sources.set_source(proxy_pose, pose)
         # By itself, the model cannot be relative to a frame.
         pose.attrib.pop('relative_to', None)
-    if relative_to == ROOT_FRAME:
-        msg = f'relative_to="{ROOT_FRAME}" is not {ValueType.FRAME.description}'
-        sources.error(AttributeInvalidError, proxy_pose, msg)
-        return None
     root = etree.Element('sdf')
     root.append(model)
     known = model_by_itself(root)

@@ -273,6 +273,13 @@ def test_other_content_of_the_merged_model_is_dropped(scene_of):
     assert not scene_of(in_model(include()), arm=text).static_models
 
 
+def test_plugins_move_with_the_content(tmp_path):
+    write_files(tmp_path, main=in_model(include()), arm=arm(
+        LINK + '<plugin name="p" filename="f"/>'))
+    scene = load(tmp_path / 'main.sdf', plugins=True)
+    assert [each.name for each in scene.plugins[scene.index('m')]] == ['p']
+
+
 def test_merged_model_can_merge_another(scene_of):
     middle = in_model(include('<pose>0 0 100 0 0 0</pose>'))
     scene = scene_of(

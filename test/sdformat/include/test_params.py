@@ -262,10 +262,15 @@ def test_prefix_of_parameters_can_be_declared(write, tmp_path):
     assert 'arm::grip' not in names_of(scene)
 
 
-def test_unit_of_numbers_that_are_not_changed_cannot_be_changed(load):
-    scene = load('<link element_id="base"><pose action="modify" degrees="true"/></link>')
+@pytest.mark.parametrize(('params', 'told'), [
+    ('<link element_id="base"><pose action="modify" degrees="true"/></link>', 'has no effect'),
+    ('<link element_id="base" action="modify"><visual name="shape"/></link>',
+     'holds nothing, so it changes nothing'),
+])
+def test_parameter_without_an_effect_is_told(load, params, told):
+    scene = load(params)
     assert_at(scene, 'arm::base', (1, 0, 0))
-    assert 'has no effect' in scene.warnings[0].message
+    assert told in scene.warnings[0].message
 
 
 def test_changed_numbers_are_in_the_unit_that_is_given_with_them(load):
@@ -278,6 +283,11 @@ def test_changed_numbers_are_in_the_unit_that_is_given_with_them(load):
     'box_shape', 'forcetorque', 'heightmap_shape', 'image_shape', 'sphere_shape', 'gui'])
 def test_element_that_is_defined_for_itself_can_be_added(load, tag):
     load(f'<{tag} element_id="base" name="x" action="add"/>')
+
+
+def test_required_element_that_is_missing_is_added_before_it_is_changed(load):
+    load('<light element_id="base" name="lamp" type="spot" action="add"/>'
+         '<light element_id="base::lamp" action="modify"><direction>0 0 -1</direction></light>')
 
 
 @pytest.mark.parametrize('action', ['add', 'replace', 'modify'])

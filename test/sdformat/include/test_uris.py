@@ -207,6 +207,11 @@ def test_reason_for_a_missing_model_names_what_was_searched(uri, reason):
     assert 'GZ_SIM_RESOURCE_PATH' in finder.reason_not_found(uri, 'cells/a.sdf')
 
 
+def test_reason_for_a_model_of_gazebo_classic_says_that_it_is_not_needed():
+    assert resource_finder((), {}).reason_not_found('model://sun', 'a.sdf') == (
+        'it comes with Gazebo Classic, and no frame needs it')
+
+
 @pytest.mark.parametrize(('uri', 'file', 'missing'), [
     ('package://arm/meshes/basee.stl', 'urdf/arm.urdf', 'basee.stl'),
     ('model://arm/meshes/basee.stl', 'urdf/arm.urdf', 'basee.stl'),

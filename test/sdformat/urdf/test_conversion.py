@@ -117,13 +117,13 @@ def test_floating_joint_is_left_to_others_for_ros():
         'joint "j" is floating; somebody else has to publish where link "b" is')
 
 
-def test_axis_limits_and_mimic_are_converted():
+def test_axis_limits_dynamics_and_mimic_are_converted():
     content = ('<axis xyz="0 1 0"/><limit lower="2" upper="-1" effort="3" velocity="4"/>'
-               '<mimic joint="k" multiplier="5"/>')
+               '<dynamics damping="6" friction="7"/><mimic joint="k" multiplier="5"/>')
     axis = model_from(robot(TWO + joint('j', 'a', 'b', 'revolute', content))).find('joint/axis')
     texts = {child.tag: child.text for child in axis.iter() if len(child) == 0}
     assert texts == {'xyz': '0 1 0', 'lower': '-1', 'upper': '2', 'effort': '3', 'velocity': '4',
-                     'multiplier': '5', 'offset': '0'}
+                     'damping': '6', 'friction': '7', 'multiplier': '5', 'offset': '0'}
     assert axis.find('mimic').get('joint') == 'k'
 
 
