@@ -61,13 +61,14 @@ def test_joints_that_nobody_reports_are_a_warning(status_of):
 
 
 def test_messages_with_old_stamps_are_a_warning(status_of):
-    status = status_of(GOOD, states=StateReport(problems=['from /a', 'from /b']))
+    status = status_of(with_lights(1), states=StateReport(['j'], problems=['from /a', 'from /b']))
     assert (status.level, status.message) == (DiagnosticStatus.WARN, 'from /a; from /b')
     assert values_of(status)['problems of topics'] == '2'
 
 
 def test_a_failed_load_is_an_error_whatever_is_served(status_of):
-    status = status_of(with_lights(1), 'cell.sdf:3: first', 'cell.sdf:4: second')
+    status = status_of(with_lights(1), 'cell.sdf:3: first', 'cell.sdf:4: second',
+                       states=StateReport(failures=['internal error']))
     assert status.level == DiagnosticStatus.ERROR
     assert status.message == (
         'the last load failed, the scene before it is published: cell.sdf:3: first')
@@ -112,7 +113,6 @@ def test_no_status_is_made_while_it_is_off(make_node):
 def test_each_message_has_the_time_of_the_node(make_node):
     node = make_node('bridge')
     diagnostics = Diagnostics(node, tuple)
-    diagnostics.switch(on=True)
     before = node.get_clock().now().to_msg()
-    diagnostics.publish()
+    diagnostics.switch(on=True)
     assert diagnostics._message.header.stamp.sec >= before.sec > 0

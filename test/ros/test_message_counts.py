@@ -31,10 +31,11 @@ ONE_OF_TEN = [0.0 if turn % 10 else 1.0 for turn, _ in enumerate(TIMES)]
 
 @pytest.mark.parametrize('messages', [
     [(0, 0.0, number) for number in (7, 1, 8, 2, 9, 3)],
+    [(0, 0.0, number) for number in (1, 1, 2, 2, 3, 3)],
     [(stamp, 0.0, None) for stamp in (9, 7, 10, 8, 11, 9, 12, 10)],
     [(turn, value, None) for turn, value in enumerate(BY_TURNS)],
     [(0, value, None) for value in ONE_OF_TEN],
-], ids=['numbers', 'stamps', 'by turns', 'one of ten'])
+], ids=['numbers', 'equal numbers', 'stamps', 'by turns', 'one of ten'])
 def test_messages_of_two_publishers(messages):
     assert counts_of(*messages).have_several_publishers
 
@@ -44,9 +45,12 @@ def test_messages_of_two_publishers(messages):
     [(stamp, 0.0, None) for stamp in (7, 8, 1, 2, 3)],
     [(0, of_arm(second), None) for second in TIMES],
     [(turn, NOISE.gauss(0.0, 2e-4), None) for turn, _ in enumerate(TIMES)],
+    [(turn, 0.2 * turn + 0.8 * (turn % 2), None) for turn in range(20)],
+    [(stamp, 0.0, None) for stamp in (5, 0, 6, 0, 7, 0, 8, 0)],
     [(5, 1.0, None)] * 10,
     [(0, value, None) for value in (math.nan, math.inf, -math.inf, 1e308, -1e308) * 5],
-], ids=['started again', 'stamps once', 'a swing', 'noise', 'at rest', 'not finite'])
+], ids=['started again', 'stamps once', 'a swing', 'noise', 'steps', 'no stamps', 'at rest',
+        'not finite'])
 def test_messages_of_one_publisher(messages, recwarn):
     assert not counts_of(*messages).have_several_publishers
     assert not recwarn.list

@@ -19,6 +19,9 @@ from sdf_pose_bridge.ros.state_messages import MOST_BYTES
 from sdf_pose_bridge.ros.state_topic import StateTopic, TopicKey
 from sdf_pose_bridge.tf.odometry import Odometry
 
+QUARTER = (*TURNED[:3], *quaternion_from_rpy((0.0, 0.0, math.pi / 2.0)))
+"""The same place, after a quarter turn."""
+
 
 @pytest.fixture
 def models(make_node):
@@ -65,6 +68,7 @@ def test_the_frame_of_the_model_that_the_child_frame_id_names_is_put_there(model
     assert models.moved(child='p/a/k', frame_id='p/fixed/l') == ('a', 0.75, 4.0)
     assert models.moved(child='a', model='a') == ('a', 1.0, 2.0)
     assert models.moved(child='base_link', model='a') == ('a', 1.0, 2.0)
+    assert models.moved(child='p/a/k', pose=QUARTER)[1:] == pytest.approx((1.0, 1.75))
 
 
 @pytest.mark.parametrize('child', ['a::b', 'p/a/b/l', 'fixed', 'world'])
@@ -90,8 +94,7 @@ def test_the_odometry_of_wheels_counts_from_the_file_whatever_the_parameters_say
     assert models.moved(child='p/a/b/l', frame_id='b/odom') == ('a/b', 1.0, 5.0)
     assert models.moved(child='x', model='a::b', frame_id='b/odom') == ('a/b', 1.0, 5.0)
     assert models.moved(frame_id='a/odom') == ('a', 1.0, 2.0)
-    turned = (1.0, 2.0, 3.0, *quaternion_from_rpy((0.0, 0.0, math.pi / 2.0)))
-    assert models.moved(child='p/a/b/l', frame_id='b/odom', pose=turned) == ('a/b', 1.0, 5.0)
+    assert models.moved(child='p/a/b/l', frame_id='b/odom', pose=QUARTER) == ('a/b', 1.0, 5.0)
     models.read(frame_id='c/odom')
     log = capfd.readouterr().err
     assert log.count('model_pose_frames has no effect on "b/odom": the odometry of wheels') == 1
@@ -101,8 +104,7 @@ def test_the_odometry_of_wheels_counts_from_the_file_whatever_the_parameters_say
 def test_odometry_with_an_offset_is_taken_back_in_the_turned_model(models):
     models.effects.odometry = {(models.effects.models['a'], 'o'): Odometry(
         Pose(), Pose(0.0, 1.0, 0.0), is_of_wheels=False)}
-    turned = (1.0, 2.0, 3.0, *quaternion_from_rpy((0.0, 0.0, math.pi / 2.0)))
-    assert models.moved(frame_id='o', pose=turned)[1:] == pytest.approx((0.0, 2.0))
+    assert models.moved(frame_id='o', pose=QUARTER)[1:] == pytest.approx((0.0, 2.0))
 
 
 def test_a_pose_on_a_topic_for_no_single_model_is_ignored(models, capfd):
