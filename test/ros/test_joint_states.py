@@ -227,9 +227,16 @@ def test_a_joint_that_no_message_has_named_moves_nothing(following):
     following.start()
     following.connect()
     assert following.published(
-        (FIRST, {'lift': math.nan, 'turn': 0.5}), (FIRST + 1, {'lift': 0.5}),
-        (FIRST + 2, {'lift': 0.5, 'turn': 0.5}),
+        (FIRST - 1, {'none': 0.5}), (FIRST, {'lift': math.nan, 'turn': 0.5}),
+        (FIRST + 1, {'lift': 0.5}), (FIRST + 2, {'lift': 0.5, 'turn': 0.5}),
     ) == [(FIRST, {'upper'}), (FIRST + 1, {'slide'}), (FIRST + 2, {'upper', 'slide'})]
+    assert not following.states.report().failures
+
+
+def test_a_message_that_is_processed_ends_a_series_of_failures(arm):
+    arm.states._failures._since = 0.0
+    arm.send(FIRST, {'turn': 0.5})
+    arm.wait(lambda: arm.states._failures._since == math.inf)
 
 
 def test_joints_that_stay_unreported_are_counted_once_and_then_that_none_is(following, capfd):
@@ -413,6 +420,23 @@ def test_of_a_period_the_newest_stamp_counts(slow_arm):
     slow_arm.wait(lambda: slow_arm.found)
     assert slow_arm.found == [[(FIRST + 2, {'finger'}), (FIRST + 4, {'upper'})]]
     assert sorted(slow_arm.frames.positions.values) == [0.0, 0.4, 0.5]
+
+
+def test_what_waits_when_simulated_time_jumps_back_is_not_published(slow_arm):
+    slow_arm.send(FIRST, {'turn': 0.5})
+    slow_arm.wait_until_taken(0.5)
+    slow_arm.set_time(FIRST - 1)
+    slow_arm.states.wait()
+    assert slow_arm.published((FIRST - 2, {'turn': 0.25})) == [(FIRST - 2, {'upper'})]
+
+
+def test_what_waits_when_other_frames_are_followed_is_not_published(slow_arm, capfd):
+    slow_arm.send(FIRST, {'turn': 0.5, 'lift': 0.5, 'grip': 0.5})
+    slow_arm.wait_until_taken(0.5)
+    fewer = slow_arm.frames_of(ARM.replace('prismatic', 'fixed'))
+    slow_arm.follow(fewer, TOPICS, SLOW)
+    assert not slow_arm.states.report().failures
+    assert 'Traceback' not in capfd.readouterr().err
 
 
 def test_a_message_after_a_period_without_any_is_published_at_once(slow_arm):
