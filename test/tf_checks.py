@@ -32,6 +32,7 @@ def pose_of(tree, frame_id):
 def tree_errors_of(text, **options):
     with pytest.raises(SdfError) as caught:
         tf_tree_from_scene(load_text(text, 'file.sdf'), TfOptions(**options))
+    assert caught.value.warnings == ()
     return caught.value.errors
 
 
@@ -49,6 +50,7 @@ def assert_is_tree(tree):
     assert set(tree.parent_ids) <= {*ids, tree.root_frame, ''}
     assert np.isfinite(tree.transforms).all()
     assert_close(np.linalg.norm(tree.transforms[:, 3:], axis=1), 1.0, 1e-12)
+    assert (tree.poses[:, 6] >= 0.0).all()
     assert (tree.transforms[:, 6] >= 0.0).all()
     above = dict(zip(ids, tree.parent_ids, strict=True))
     matrices = dict(zip(ids, map(matrix_from_pose, tree.poses.tolist()), strict=True))

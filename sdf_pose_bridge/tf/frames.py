@@ -77,9 +77,9 @@ class Frames(NamedTuple):
 
     def transforms(self) -> PoseArray:
         """Return the pose of each frame in its parent; the identity if it has none."""
-        # The last two poses are for ROOT_IS_PARENT and NO_PARENT, which are negative.
+        # The last pose is for ROOT_IS_PARENT.
         transforms = canonical_relative_poses(
-            np.concatenate([self.poses, [Pose(), Pose()]])[self.parents], self.poses)
+            np.concatenate([self.poses, [Pose()]])[self.parents], self.poses)
         transforms[self.parents == NO_PARENT] = Pose()
         return transforms
 
@@ -96,8 +96,7 @@ def optical_frames_of_cameras(
     :param optical_names: the names of optical frames that frame ids of cameras mean.
     :return: the optical frames, without those that the file has already.
     """
-    # Of two with the same id the first one counts.
-    indices = {frame_id: index for index, frame_id in reversed([*enumerate(frames.ids)])}
+    indices = {frame_id: index for index, frame_id in enumerate(frames.ids)}
     poses: dict[str, Pose] = {}
     optical_frames = []
     cameras = [sensor for sensor in sensor_names if scene.sensors[sensor].is_camera]

@@ -46,12 +46,12 @@ def bridged_topics(scene: Scene, groups: Collection[str], world: str = '') -> li
     :raises ElementMissingError: if a topic begins with the name of the world, and there is none.
     """
     found = defaultdict[
-        tuple[str, str, str], dict[int, tuple[GazeboTopic, Mapping[str, str]]]](dict)
+        tuple[str, str], dict[int, tuple[GazeboTopic, Mapping[str, str]]]](dict)
     for element, topic, values in _topics(scene, world):
         if topic.group not in ('clock', *groups):
             pass
         elif name := topic.name(values):
-            found[name, topic.gz_type, topic.group].setdefault(element, (topic, values))
+            found[name, topic.gz_type].setdefault(element, (topic, values))
         elif 'W' not in values and '{W}' in topic.names[-1]:
             kind = Kind(scene.kinds[element]).label
             msg = (f'the {topic.ros_name} of {kind} "{scene.names[element]}" is on a topic of the '
@@ -59,7 +59,7 @@ def bridged_topics(scene: Scene, groups: Collection[str], world: str = '') -> li
                    'in which the model is spawned')
             raise ElementMissingError(msg, scene.place(element))
     bridged, used = [], set[str]()
-    for (name, *_), owners in found.items():
+    for (name, _), owners in found.items():
         element, (topic, values) = next(iter(owners.items()))
         prefix, below, model, doubt = '', name[1:], values.get('model', ''), None
         if len(owners) > 1:

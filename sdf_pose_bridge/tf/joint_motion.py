@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 from sdf_pose_bridge.geometry.chains import ends_from_pointers, Indices, poses_along_chains
 from sdf_pose_bridge.geometry.poses import (
+    canonical_poses,
     canonical_relative_poses,
     Pose,
     pose_products,
@@ -32,7 +33,7 @@ from sdf_pose_bridge.geometry.poses import (
     ScrewMotions,
     transformed_points,
 )
-from sdf_pose_bridge.geometry.rotations import canonical_quaternion, Floats
+from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.scene.scene import Joint, Scene
 from sdf_pose_bridge.sdformat.joints import JointAxis
 from sdf_pose_bridge.sdformat.specification import JOINT_TYPES, Motion
@@ -209,17 +210,11 @@ class JointMotion:
         :param values: shape (n,), the coordinates.
         :return: shape (k, 7), poses in the root; unit quaternions with w >= 0.
         """
-        last = self.last_dofs[elements]
-        rows = np.flatnonzero(last != NO_DOF)
-        moved: PoseArray = poses.copy()
-        if len(rows):
-            # The root comes last, at the index -1.
-            edges = np.concatenate([self._displacements.poses(values), [Pose()]])
-            ends = np.append(self.previous % len(edges), NO_DOF)
-            displacements = poses_along_chains(edges, ends, np.arange(len(edges)))
-            moved[rows] = pose_products(displacements[last[rows]], poses[rows])
-            moved[rows, 3:] = canonical_quaternion(moved[rows, 3:])
-        return moved
+        # The root comes last, at the index -1.
+        edges = np.concatenate([self._displacements.poses(values), [Pose()]])
+        ends = np.append(self.previous % len(edges), NO_DOF)
+        displacements = poses_along_chains(edges, ends, np.arange(len(edges)))
+        return canonical_poses(pose_products(displacements[self.last_dofs[elements]], poses))
 
     def last_chosen(self, is_chosen: NDArray[np.bool_]) -> Indices:
         """

@@ -86,9 +86,8 @@ def tf_parents_from_scene(scene: Scene) -> TfParents:
     representatives = np.where(
         scene.canonical_links < 0, np.arange(len(kinds), dtype=np.int32), scene.canonical_links)
     bodies = representatives[scene.bodies]
-    is_sensor_of_joint = (kinds == Kind.SENSOR) & (kinds[scene.parents] == Kind.JOINT)
     parents = np.select(
-        [kinds == Kind.FRAME, kinds == Kind.MODEL, kinds == Kind.JOINT, is_sensor_of_joint],
+        [kinds == Kind.FRAME, kinds == Kind.MODEL, kinds == Kind.JOINT, kinds == Kind.SENSOR],
         [scene.attachments, scene.canonical_links, bodies, bodies[scene.parents]], scene.parents)
     children = bodies[[joint.child for joint in scene.joints]]
     starts = representatives[_elements_by_rank(scene, children)].tolist()
@@ -104,8 +103,7 @@ def tf_parents_from_scene(scene: Scene) -> TfParents:
                     joints[neighbor], parents[neighbor] = joint, body
                     waiting.append(neighbor)
     is_urdf = scene.urdf_root is not None
-    is_model_alone = (kinds == Kind.MODEL) & (scene.canonical_links < 0) & (not is_urdf)
-    is_free = (kinds == Kind.LINK) | is_model_alone
+    is_free = (kinds == Kind.LINK) | ((kinds == Kind.MODEL) & (scene.canonical_links < 0))
     is_free[list(joints)] = False
     parents[is_free] = 0 if is_urdf else _parents_of_free_bodies(scene, representatives)[is_free]
     return TfParents(parents, joints, loop_joints)
@@ -165,8 +163,7 @@ def _parents_of_free_bodies(scene: Scene, representatives: Indices) -> Indices:
     without links leaves it to the model around it.
     """
     canonical_links = scene.canonical_links
-    scopes = ends_from_pointers(
-        np.where((scene.parents < 0) | (canonical_links >= 0), -1, scene.parents))
+    scopes = ends_from_pointers(np.where(canonical_links >= 0, -1, scene.parents))
     # The outermost model of those with one canonical link comes first in the file.
     outermost = np.arange(len(canonical_links), dtype=np.int32)
     models = np.flatnonzero(canonical_links >= 0)[::-1]

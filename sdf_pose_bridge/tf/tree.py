@@ -332,7 +332,7 @@ def _names(
         return names
     model = scene.top_level_element(int(elements[0]))
     name = scene.names[model]
-    if names.count(name) < 2 or scene.world_names:
+    if names.count(name) < 2:
         return names
     msg = (f'a frame in the model has the name of the model, "{name}", so frame ids begin with '
            'it, as with frame_names "scoped"')

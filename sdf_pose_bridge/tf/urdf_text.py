@@ -104,7 +104,7 @@ class UrdfWriter:
         self._problems = Problems(scene.files)
         self._parts: defaultdict[int, list[int]] = defaultdict(list)
         """The inertial, visuals and collisions of each link."""
-        for element in sorted({*scene.shapes, *scene.inertials} & robot.elements):
+        for element in sorted({*scene.shapes, *scene.inertials}):
             self._parts[scene.parents.item(element)].append(element)
         self._root = etree.Element('robot', name=robot.name)
         if has_capsules:
@@ -221,7 +221,7 @@ class UrdfWriter:
             radius, length = shape.sizes_m
             return [('capsule', {'radius': _numbers([radius]), 'length': _numbers([length])}, 0.0)]
         found = [each for part in shape.parts for each in _geometry_from_part(part)]
-        return found if found and len(found) == len(shape.parts) else f'URDF has no {shape.type}'
+        return found or f'URDF has no {shape.type}'
 
     def _mesh(self, shape: Shape, element: int) -> list[_Geometry] | str:
         uri = self._finder.uri_for_others(shape.mesh_uri, self._scene.place(element).file)
@@ -250,8 +250,6 @@ def _geometry_from_part(part: Part) -> list[_Geometry]:
 
 def _add_origin(xml: etree._Element, pose: Pose) -> None:
     """Add the pose of an element, unless it is the identity."""
-    if not any(pose[:6]):
-        return
     numbers = _rounded((*pose[:3], *rpy_from_quaternion(pose[3:])))
     if any(numbers):
         etree.SubElement(xml, 'origin', xyz=_numbers(numbers[:3]), rpy=_numbers(numbers[3:]))

@@ -379,7 +379,9 @@ def test_sensor_with_a_camera(content, is_camera, optical_frame_id):
 
 
 @pytest.mark.parametrize(('sensor_type', 'is_camera'), [
-    ('camera', True), ('rgbd_camera', True), ('gpu_lidar', False)])
+    ('gpu_lidar', False), *((each, True) for each in (
+        'camera depth_camera rgbd_camera thermal_camera segmentation_camera boundingbox_camera '
+        'wide_angle_camera wideanglecamera multicamera thermal').split())])
 def test_sensor_of_the_type_of_a_camera(sensor_type, is_camera):
     assert sensor_with('', sensor_type).is_camera == is_camera
 

@@ -68,9 +68,11 @@ def test_models_whose_names_match_are_anchored(text, models):
 
 
 @pytest.mark.parametrize(('text', 'hint'), [
-    ('tabel1', '; did you mean "table1"?'), ('statik', '; did you mean "static"?'), ('zzz*', '')])
+    ('tabel1', '; did you mean "table1"?'), ('statik', '; did you mean "static"?'), ('zzz*', ''),
+    ('table3', '; did you mean "table2"?')])
 def test_pattern_without_a_model_is_a_warning(text, hint):
-    (warning,) = tree_with(f'robot*,{text}').warnings
+    two_worlds = WORLD.replace('</sdf>', f'<world name="v">{model("elsewhere")}</world></sdf>')
+    warning, _ = tree_with(f'robot*,elsewhere,{text}', two_worlds).warnings
     assert warning.message == (
         f'anchor_models: no top-level model has a name like "{text}"{hint}')
 

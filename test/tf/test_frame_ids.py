@@ -4,7 +4,7 @@
 
 import numpy as np
 import pytest
-from sdf_texts import element, fixed_joint, model_file, TWO_LINKS, world_file
+from sdf_texts import element, fixed_joint, link_with, model_file, TWO_LINKS, world_file
 from tf_checks import model, only_tree_error, parents_of, pose_of, tree_of
 
 from sdf_pose_bridge import load_text
@@ -26,21 +26,15 @@ def in_world(children):
 
 @pytest.mark.parametrize(('text', 'names', 'ids'), [
     (model_file(NESTED), FrameNames.AUTO, ['m', 'l', 'n', 'n/k']),
-    (model_file(NESTED), FrameNames.RELATIVE, ['m', 'l', 'n', 'n/k']),
     (model_file(NESTED), FrameNames.SCOPED, ['m', 'm/l', 'm/n', 'm/n/k']),
     (in_world(NESTED), FrameNames.AUTO, ['m', 'm/l', 'm/n', 'm/n/k']),
-    (in_world(NESTED), FrameNames.SCOPED, ['m', 'm/l', 'm/n', 'm/n/k']),
     (in_world(NESTED), FrameNames.RELATIVE, ['m', 'l', 'n', 'n/k']),
+    (world_file('<light name="s" type="point"/><actor name="m"/><model name="m1"><link name="l"/>'
+                '</model><frame name="f"/>' + fixed_joint('j', 'world', 'm1')),
+     FrameNames.RELATIVE, ['light/s', 'actor/m', 'm1', 'l', 'f', 'j']),
 ])
 def test_scoped_and_relative(text, names, ids):
     assert ids_of(text, names) == ids
-
-
-def test_names_in_the_world_stay():
-    text = world_file(
-        '<model name="m"><link name="l"/></model><frame name="f"/>'
-        + fixed_joint('j', 'world', 'm'))
-    assert ids_of(text, FrameNames.RELATIVE) == ['m', 'l', 'f', 'j']
 
 
 @pytest.mark.parametrize(('separator', 'frame_id'), [
@@ -49,18 +43,11 @@ def test_the_separator(separator, frame_id):
     assert ids_of(in_world(NESTED), FrameNames.AUTO, separator)[-1] == frame_id
 
 
-@pytest.mark.parametrize('prefix', ['r1/', 'r1_', 'r1::'])
-def test_the_prefix_is_put_in_front_as_it_is(prefix):
-    assert ids_of(in_world(NESTED), FrameNames.AUTO, '/', prefix) == [
-        f'{prefix}m', f'{prefix}m/l', f'{prefix}m/n', f'{prefix}m/n/k']
-
-
 @pytest.mark.parametrize('tag', CHILDREN)
 def test_kinds_that_share_names_have_the_kind_in_the_id(tag):
     link = f'<link name="l">{element(tag, "x")}</link>'
     assert ids_of(in_world(link))[-1] == f'm/l/{tag}/x'
     assert ids_of(model_file(link))[-1] == f'l/{tag}/x'
-    assert ids_of(in_world(link), FrameNames.AUTO, '.')[-1] == f'm.l.{tag}.x'
 
 
 @pytest.mark.parametrize(('content', 'frame_id'), [
@@ -70,11 +57,6 @@ def test_kinds_that_share_names_have_the_kind_in_the_id(tag):
 ])
 def test_kinds_that_share_no_names(content, frame_id):
     assert ids_of(in_world(content))[-1] == frame_id
-
-
-def test_a_light_and_an_actor_of_a_world():
-    text = world_file('<light name="sun" type="point"/><actor name="man"/>')
-    assert ids_of(text) == ['light/sun', 'actor/man']
 
 
 @pytest.mark.parametrize(('name', 'frame_id'), [
@@ -93,12 +75,14 @@ def lidar(name, frame_id='', pose='1 0 0 0 0 0'):
 
 # Sensors with a frame id of their own
 
-def test_a_frame_id_that_nothing_has_becomes_a_frame_at_the_sensor():
-    text = model_file(f'<link name="l">{lidar("s", "laser")}</link>')
-    tree = tree_of(text)
-    assert dict(zip(tree.frame_ids, tree.parent_ids, strict=True)) == {
-        'm': 'l', 'l': '', 'laser': 'l'}
-    assert pose_of(tree, 'laser')[:3] == [1, 0, 0]
+@pytest.mark.parametrize(('frame_id', 'prefix', 'parents'), [
+    ('laser', '', {'m': 'l', 'l': '', 'laser': 'l'}), ('world', '', {'m': 'l', 'l': ''}),
+    ('laser', 'r/', {'r/m': 'r/l', 'r/l': '', 'r/laser': 'r/l'}),
+    ('m::laser', '', {'m': 'l', 'l': '', 'm/laser': 'l'})])
+def test_a_frame_id_becomes_a_frame_unless_it_is_that_of_the_root(frame_id, prefix, parents):
+    text = link_with(lidar('s', frame_id))
+    for each in (text, text.replace('gz_frame_id', 'ignition_frame_id')):
+        assert parents_of(each, frame_prefix=prefix) == parents
 
 
 @pytest.mark.parametrize('children', [
@@ -110,30 +94,9 @@ def test_a_frame_id_of_another_frame_makes_no_frame(children):
     assert pose_of(tree, 'laser')[:3] == [0, 0, 0]
 
 
-def test_the_frame_id_of_the_root_makes_no_frame():
-    tree = tree_of(world_file(model('m', f'<link name="l">{lidar("s", "world")}</link>')))
-    assert sorted(tree.frame_ids) == ['m', 'm/l']
-
-
-def test_a_frame_id_may_be_spelled_as_in_sdf():
-    text = world_file(model('m', f'<link name="l">{lidar("s", "m::laser")}</link>'))
-    assert 'm/laser' in tree_of(text).frame_ids
-
-
-def test_a_frame_id_gets_the_prefix():
-    text = model_file(f'<link name="l">{lidar("s", "laser")}</link>')
-    assert parents_of(text, frame_prefix='r1/')['r1/laser'] == 'r1/l'
-
-
-def test_the_old_spelling():
-    text = model_file(f'<link name="l">{lidar("s", "laser")}</link>')
-    assert 'laser' in tree_of(text.replace('gz_frame_id', 'ignition_frame_id')).frame_ids
-
-
 def test_two_sensors_elsewhere_share_a_frame_id():
-    text = model_file(
-        f'<link name="l">{lidar("s", "laser")}{lidar("t", "laser", "2 0 0 0 0 0")}</link>')
-    error = only_tree_error(text)
+    error = only_tree_error(
+        link_with(lidar('s', 'laser') + lidar('t', 'laser', '2 0 0 0 0 0')))
     assert error.code == 'DUPLICATE_NAME'
     assert '"m::l::s"' in error.message
     assert '"m::l::t"' in error.message
@@ -150,5 +113,6 @@ def test_sensors_of_many_robots_share_a_frame_id():
 
 
 def test_two_sensors_in_one_place_share_a_frame_id():
-    text = model_file(f'<link name="l">{lidar("s", "laser")}{lidar("t", "laser")}</link>')
-    assert tree_of(text).frame_ids == ('m', 'l', 'laser')
+    tree = tree_of(link_with(lidar('s', 'laser') + lidar('t', 'laser')))
+    assert tree.frame_ids == ('m', 'l', 'laser')
+    assert pose_of(tree, 'laser')[:3] == [1, 0, 0]

@@ -2,18 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Frames of cameras and at joints; test_urdf_robot.py compares the poses of the latter."""
 
-from matrices import assert_same_pose, matrix_from_rpy
-import numpy as np
 import pytest
-from sdf_texts import joint, model_file, posed, world_file
+from sdf_texts import joint, model_file, posed, TWO_LINKS, world_file
 from tf_checks import only_tree_error, parents_of, pose_of, tree_of
 
 from sdf_pose_bridge import load_text
-from sdf_pose_bridge.tf.frame_ids import FrameNaming
+from sdf_pose_bridge.tf.frame_ids import FrameNames, FrameNaming
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
-
-OPTICAL = matrix_from_rpy(0, 0, 0, -np.pi / 2, 0, -np.pi / 2)
-
 
 # Cameras
 
@@ -22,80 +17,49 @@ def camera(name='cam', children='', inside='', pose='1 0 0 0 0 0'):
             f'<camera>{inside}</camera></sensor>')
 
 
-def test_a_camera_has_an_optical_frame():
-    tree = tree_of(model_file(f'<link name="l">{camera()}</link>'))
-    parents = dict(zip(tree.frame_ids, tree.parent_ids, strict=True))
-    assert parents['l/cam_optical'] == 'l/cam'
-    assert_same_pose(
-        tree.transforms[tree.frame_ids.index('l/cam_optical')].tolist(), OPTICAL, 1e-12)
+LIDAR = '<sensor name="s" type="gpu_lidar"/>'
+NAMES_EYE = '<optical_frame_id>eye</optical_frame_id>'
 
 
-def test_the_quaternion_of_an_optical_frame_is_canonical():
-    text = model_file(f'<link name="l">{camera(pose="0 0 0 0 0 -2.5")}</link>')
-    assert pose_of(tree_of(text), 'l/cam_optical')[6] >= 0
-
-
-@pytest.mark.parametrize('kind', [
-    'camera', 'depth_camera', 'rgbd_camera', 'thermal_camera', 'segmentation_camera',
-    'boundingbox_camera', 'wide_angle_camera', 'wideanglecamera', 'multicamera', 'thermal'])
-def test_every_type_of_camera(kind):
-    text = model_file(f'<link name="l"><sensor name="cam" type="{kind}"/></link>')
-    assert 'l/cam_optical' in tree_of(text).frame_ids
-
-
-def test_what_is_no_camera_has_no_optical_frame():
-    text = model_file('<link name="l"><sensor name="s" type="gpu_lidar"/></link>')
-    assert tree_of(text).frame_ids == ('m', 'l', 'l/s')
-
-
-def test_optical_frames_can_be_left_out():
-    text = model_file(f'<link name="l">{camera()}</link>')
-    assert tree_of(text, optical_frames=False).frame_ids == ('m', 'l', 'l/cam')
-
-
-def test_a_camera_names_its_optical_frame():
-    text = model_file('<link name="l">' + camera(
-        inside='<optical_frame_id>eye</optical_frame_id>') + '</link>')
-    assert parents_of(text) == {'m': 'l', 'l': '', 'l/cam': 'l', 'eye': 'l/cam'}
-
-
-def test_the_optical_frame_of_a_camera_with_a_frame_id():
-    text = model_file(f'<link name="l">{camera(children="<gz_frame_id>eye</gz_frame_id>")}</link>')
-    assert parents_of(text) == {'m': 'l', 'l': '', 'eye': 'l', 'eye_optical': 'eye'}
-
-
-def test_the_optical_frame_of_a_camera_with_the_frame_id_of_a_link():
-    tree = tree_of(model_file(
-        f'<link name="l">{camera(children="<gz_frame_id>l</gz_frame_id>")}</link>'))
-    assert tree.frame_ids == ('m', 'l', 'l_optical')
-    assert pose_of(tree, 'l_optical')[:3] == [1, 0, 0]
+@pytest.mark.parametrize(('sensor', 'options', 'parents'), [
+    (camera(), {'optical_frames': False}, {'l/cam': 'l'}),
+    (camera(pose='0 0 0 0 0 -2.5'), {}, {'l/cam': 'l', 'l/cam_optical': 'l/cam'}),
+    (camera(inside=NAMES_EYE), {}, {'l/cam': 'l', 'eye': 'l/cam'}),
+    (camera(children='<gz_frame_id>eye</gz_frame_id>'), {}, {'eye': 'l', 'eye_optical': 'eye'}),
+    (camera(children='<gz_frame_id>l</gz_frame_id>'), {}, {'l_optical': 'l'}),
+    (camera(children='<gz_frame_id>world</gz_frame_id>'), {}, {'world_optical': 'world'}),
+], ids=['not wanted', 'a camera', 'a name', 'a frame id', 'of a link', 'of the root'])
+def test_optical_frames(sensor, options, parents):
+    text = model_file(f'<link name="l">{sensor}</link>')
+    assert parents_of(text, **options) == {'m': 'l', 'l': '', **parents}
 
 
 def test_an_optical_frame_that_the_file_has_is_left_alone():
-    text = model_file("""
-        <link name="l">
-          <sensor name="cam" type="camera"><pose>1 0 0 0 0 0</pose>
-            <camera><optical_frame_id>eye</optical_frame_id></camera>
-          </sensor>
-        </link>
-        <frame name="eye"><pose>0 0 5 0 0 0</pose></frame>""")
-    tree = tree_of(text)
+    tree = tree_of(model_file(f'<link name="l">{camera(inside=NAMES_EYE)}</link>'
+                              '<frame name="eye"><pose>0 0 5 0 0 0</pose></frame>'))
     assert sorted(tree.frame_ids) == ['eye', 'l', 'l/cam', 'm']
     assert pose_of(tree, 'eye')[:3] == [0, 0, 5]
 
 
 def test_two_cameras_elsewhere_name_one_optical_frame():
-    inside = '<optical_frame_id>eye</optical_frame_id>'
-    text = model_file(
-        f'<link name="l">{camera("c", "", inside)}{camera("d", "", inside, "2 0 0 0 0 0")}</link>')
-    error = only_tree_error(text)
+    poses = {'c': '1 0 0 0 0 0', 'd': '2 0 0 0 0 0', 'e': '1 0 0 0 0 0'}
+    cameras = (camera(name, '', NAMES_EYE, pose) for name, pose in poses.items())
+    error = only_tree_error(model_file(f'<link name="l">{"".join(cameras)}</link>'))
     assert error.code == 'DUPLICATE_NAME'
-    assert '"eye"' in error.message
+    assert error.message.startswith(
+        'sensor "m::l::d" and sensor "m::l::c" (line 1) would share the frame id "eye"; the '
+        'file sets it, ')
 
 
-def test_an_optical_frame_would_take_the_id_of_a_link():
-    text = model_file(f'<link name="l">{camera()}</link><link name="l/cam_optical"/>')
-    assert only_tree_error(text).code == 'DUPLICATE_NAME'
+@pytest.mark.parametrize(('inside', 'other'), [
+    ('', '<link name="l/cam_optical">{}</link>'),
+    (NAMES_EYE, f'<link name="b">{LIDAR}</link>'.replace(
+        '/>', '>{}<gz_frame_id>eye</gz_frame_id></sensor>'))])
+def test_an_optical_frame_would_take_the_id_of_another_frame(inside, other):
+    text = model_file(f'<link name="l">{camera(inside=inside)}</link>{other}')
+    assert only_tree_error(text.format('')).code == 'DUPLICATE_NAME'
+    place = '<pose rotation_format="quat_xyzw">1 0 0 -0.5 0.5 -0.5 0.5</pose>'
+    assert tree_of(text.format(place)).warnings == ()
 
 
 LENS = '0.1 0 0.05 -90 0 -90'
@@ -140,7 +104,8 @@ def test_a_sensor_that_is_no_camera_there_keeps_its_own_frame(sensor_type, x, fr
     ('gpu_lidar', 'world', '', '1 m and 0 degrees'), ('camera', 'f', 'f', '0 m and 120 degrees'),
     ('gpu_lidar', 'eye', '', '0 m and 119.95 degrees'), ('gpu_lidar', 'f', '', ''),
     ('gpu_lidar', 'laser', '', ''), ('gpu_lidar', '', '', ''), ('camera', 'f', 'eye', ''),
-    ('camera', 'eye', 'lens', ''), ('camera', 'eye', '', '')])
+    ('camera', 'eye', 'lens', ''), ('camera', 'eye', '', ''),
+    ('camera', '', 'f', '0 m and 120 degrees')])
 def test_a_frame_elsewhere_is_told(sensor, frame_id, optical_frame_id, away):
     tree = tree_of(model_file(
         f'<link name="l"><sensor name="s" type="{sensor}"><pose>1 0 0 0 0 0</pose>'
@@ -148,6 +113,7 @@ def test_a_frame_elsewhere_is_told(sensor, frame_id, optical_frame_id, away):
             f'<camera><optical_frame_id>{optical_frame_id}</optical_frame_id></camera>'
             if sensor == 'camera' else '') + '</sensor></link>'
         + posed('frame', 'f', '1 0 0 0 0 0') + posed('frame', 'eye', '1 0 0 -1.57 0 -1.57')))
+    assert optical_frame_id in ('', *tree.frame_ids)
     messages = [each.message for each in tree.warnings]
     assert len(messages) == bool(away)
     assert f' "m::l::s" is that of a frame {away} away' in ''.join(messages) or not away
@@ -174,17 +140,24 @@ def parents_of_links(content, joint_type, **options):
     (ENDS, 'revolute', {}),
     (AWAY, 'fixed', {}),
     (AWAY, 'revolute', {'j_frame': 'a'}),
+    (f'<pose>0 0 0 0 0 1</pose>{ENDS}', 'revolute', {'j_frame': 'a'}),
+    (AWAY.replace('>a<', '>world<'), 'revolute', {'j_frame': 'world'}),
     (ENDS + AXES, 'universal', {'j_frame': 'a'}),
     (AWAY + AXES, 'universal', {'j_frame': 'a', 'j_axis2_frame': 'a'}),
     (ENDS, 'ball', {'j_yaw_frame': 'a', 'j_pitch_frame': 'a'}),
     (AWAY, 'screw', {'j_slide_frame': 'a'}),
 ])
 def test_frames_at_joints(content, joint_type, parents):
-    assert parents_of_links(content, joint_type) == parents
+    for follows_models in (False, True):
+        assert parents_of_links(content, joint_type, follows_models=follows_models) == parents
+    if 'j_frame' in parents:
+        assert 'j_frame' not in parents_of_links(content, joint_type, root_frame='j_frame')
 
 
-def test_frames_at_joints_have_the_prefix():
-    assert parents_of_links(AWAY, 'revolute', frame_prefix='r/') == {'r/j_frame': 'r/a'}
+def test_frames_at_joints_have_names_like_others():
+    assert parents_of_links(
+        AWAY, 'revolute', frame_prefix='r/', frame_names=FrameNames.SCOPED) == {
+            'r/m/j_frame': 'r/m/a'}
 
 
 @pytest.mark.parametrize(('text', 'ids'), [
@@ -208,17 +181,12 @@ def test_all_frame_ids_are_made_in_one_place(monkeypatch, text, ids):
     assert list(tree.frame_ids) == [f'r/{each}_sim' for each in ids]
 
 
-def test_there_are_none_unless_they_are_asked_for():
-    assert 'j_frame' not in tf_tree_from_scene(load_text(model_file(
-        '<link name="a"/><link name="b"/>' + joint(AWAY, 'j', 'revolute')))).frame_ids
-
-
-def test_a_joint_to_a_model_that_is_not_published_has_none():
+def test_a_joint_has_none_if_another_one_has_its_name_or_it_is_not_wanted():
     text = world_file(
-        '<model name="base"><link name="l"/></model><model name="arm"><link name="l"/></model>'
-        '<joint name="j" type="revolute"><pose>0 1 0 0 0 0</pose><parent>base</parent>'
-        '<child>arm</child><axis><xyz>0 0 1</xyz></axis></joint>')
-    options = TfOptions(has_joint_links=True)
-    assert 'j_frame' in tf_tree_from_scene(load_text(text), options).frame_ids
-    assert 'j_frame' not in tf_tree_from_scene(
-        load_text(text), options._replace(model='arm')).frame_ids
+        '<model name="base"><link name="l"/></model><model name="arm"><link name="k"/></model>'
+        + joint(AWAY.replace('>a<', '>base<').replace('>b<', '>arm<'), 'j', 'revolute')
+        + f'<model name="m">{TWO_LINKS}{joint(AWAY, "j", "revolute")}</model>')
+    options = TfOptions(has_joint_links=True, frame_names=FrameNames.RELATIVE)
+    for changes, count in (({}, 1), ({'model': 'arm'}, 0), ({'has_joint_links': False}, 0)):
+        tree = tf_tree_from_scene(load_text(text), options._replace(**changes))
+        assert tree.frame_ids.count('j_frame') == count

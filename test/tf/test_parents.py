@@ -80,23 +80,10 @@ STATIC_LINK = model('s', '<static>1</static><link name="l"/>')
 PARENTS = {
     'an inertial: its link': (
         model_file('<link name="a"><inertial/></link>'), {'m::a::inertial': 'm::a'}),
-    'a joint: its child link': (
-        model_file(LINKS + '<frame name="f" attached_to="c"/>' + joints(('a', 'b'), ('b', 'f'))),
-        {'m::a_b': 'm::b', 'm::b_f': 'm::c'}),
-    'a sensor of a joint: the child link': (
-        model_file(LINKS + fixed_joint('j', 'a', 'b', element('sensor', 's'))),
-        {'m::j::s': 'm::b'}),
-    'a sensor of a joint to a frame: the link': (
-        model_file("""
-            <link name="a"/>
-            <link name="b"/>
-            <frame name="f" attached_to="b"/>
-            <joint name="j" type="fixed">
-              <parent>a</parent>
-              <child>f</child>
-              <sensor name="s" type="camera"/>
-            </joint>"""),
-        {'m::j::s': 'm::b'}),
+    'joints and their sensors: the child link, also of a frame': (
+        model_file(LINKS + '<frame name="f" attached_to="c"/>' + joints(('a', 'b'))
+                   + fixed_joint('j', 'b', 'f', element('sensor', 's'))),
+        {'m::a_b': 'm::b', 'm::j': 'm::c', 'm::j::s': 'm::c'}),
     'a model of models: the first link below': (
         model_file(model('n', '<link name="k"/>')),
         {'m': 'm::n::k', 'm::n::k': '__root__'}),
@@ -132,9 +119,19 @@ PARENTS = {
     'a joint to a static model': (
         world_file(STATIC_LINK + model('m', LINKS) + joints(('s', 'm::b'))),
         {'m::b': 's::l', 'm::a': 'world', 's::l': 'world'}),
-    'a static model that is the child of a joint: its parent in TF': (
-        world_file(model('m', LINKS) + STATIC_LINK + joints(('m::a', 's'))),
+    'a static model that is the child of a joint, also in a second world: its parent in TF': (
+        world_file('</world><world name="v">' + model('m', LINKS) + STATIC_LINK
+                   + joints(('m::a', 's'))),
         {'m::a': 's::l', 's::l': 'world', 'm_a_s': 's::l'}),
+    'a static model in a model: what a joint connects it to': (
+        model_file(LINKS + STATIC_LINK + joints(('a', 's'))),
+        {'m::s::l': 'm::a', 'm::a': '__root__'}),
+    'a nested model that a joint connects to another top-level one: the link of that': (
+        world_file(model('a', LINKS + model('n', LINKS)) + model('b', LINKS) + joints(
+            ('a::n', 'b'))), {'a::n::a': 'b::a', 'b::a': 'world'}),
+    'a link that a joint connects to a nested model: its canonical link': (
+        model_file(LINKS + TWO_IN_NESTED + joints(('b', 'n::k'))),
+        {'m::b': 'm::n::k', 'm::n::k': 'm::a'}),
     'a link that is joined to the world: the world': (
         world_file(model('m', LINKS + joints(('a', 'b'), ('world', 'b'), ('b', 'c')))),
         {'m::b': 'world', 'm::a': 'm::b', 'm::c': 'm::b', 'm': 'm::a'}),
@@ -165,14 +162,6 @@ PARENTS = {
 def test_parents(text, expected):
     parents = parents_of(text)
     assert {name: parents[name] for name in expected} == expected
-
-
-def test_the_bodies_that_a_joint_connects_to_their_parents():
-    scene = load_text(world_file(
-        model('free', LINKS) + model('bolted', LINKS + joints(('world', 'a'), ('a', 'b')))
-        + model('fixed', '<static>1</static><link name="l"/>') + '<frame name="f"/>'))
-    assert [scene.names[body] for body in tf_parents_from_scene(scene).joints] == [
-        'bolted::a', 'bolted::b']
 
 
 # Any joints
@@ -237,8 +226,3 @@ def test_models_in_a_model_without_a_transform_stay_in_it():
     found = tf_parents_from_scene(scene).with_free_models(
         scene, np.array([name == 'b::a' for name in scene.names]), '')
     assert [scene.names[each] for each in found.free_models.values()] == ['a']
-
-
-def test_a_tree_of_joints_starts_at_a_top_level_model_rather_than_in_a_nested_one():
-    text = world_file(model('a', LINKS + model('n', LINKS)) + B + fixed_joint('j', 'a::n', 'b'))
-    assert parents_of(text)['a::n::a'] == 'b::a'
