@@ -17,38 +17,54 @@ from sdf_pose_bridge.tf.tree import TfOptions
 
 ARM = model_file("""
     <link name="base"/>
-    <link name="tool"><pose>1 0 0 0 0 0</pose></link>
-    <frame name="mark"><pose>2 0 0 0 0 0</pose></frame>
-    <frame name="on_mark"><pose relative_to="mark">0 0 1 0 0 0</pose></frame>
+    <link name="tool"><pose>1 0 0 0 0 0</pose><sensor name="eye" type="camera"/></link>
     <joint name="turn" type="revolute"><pose relative_to="base"/>
       <parent>base</parent>
       <child>tool</child>
       <axis><xyz>0 0 1</xyz></axis>
-    </joint>""")
+    </joint>
+    <frame name="mark"><pose>2 0 0 0 0 0</pose></frame>
+    <frame name="on_mark"><pose relative_to="mark">0 0 1 0 0 0</pose></frame>""")
 
 
 @pytest.fixture(name='change')
 def make_change(tmp_path):
-    """Finds a change of the arm; ``change(frame, pose, reference, *positions)``."""
+    """Changes a pose of the arm; returns the frames that moved, and the text of the file then."""
     path = tmp_path / 'arm.sdf'
     path.write_text(ARM, encoding='utf-8')
-    request = LoadRequest(str(path), '', tf_options=TfOptions(use_joint_states=True))
+    request = LoadRequest(
+        str(path), '', tf_options=TfOptions(use_joint_states=True, frame_prefix='r/'))
     loaded = loaded_scene_from_request(request)
     fingerprint = fingerprint_of_scene(loaded.scene)
 
-    def change(frame, pose, reference='', position=0.0, published=fingerprint):
+    def change(
+            frame, pose, reference='', position=0.0, published=fingerprint, *, dry_run=False):
         positions = loaded.joint_positions
         positions.update(positions.selection(['turn']), np.array([position]))
-        write_frame_change(
-            request, published, frame, pose, reference, positions, dry_run=False)
-        return path.read_text(encoding='utf-8')
+        found = write_frame_change(
+            request, published, frame, pose, reference, positions, dry_run=dry_run)
+        return found.moved_frames, path.read_text(encoding='utf-8')
 
     return change
 
 
 def test_a_pose_is_taken_where_its_reference_has_moved_to(change):
-    text = change('mark', Pose(0.5), 'tool', np.pi / 2)
+    arguments = 'r/mark', Pose(0.5), 'r/tool', np.pi / 2
+    assert change(*arguments, dry_run=True) == (['r/on_mark'], ARM)
+    moved, text = change(*arguments)
+    assert moved == ['r/on_mark']
     assert_close(load_text(text).pose('m::mark')[:3], (0.0, 1.5, 0.0))
+
+
+def test_the_camera_of_an_optical_frame_is_moved(change):
+    moved, text = change('r/tool/eye_optical', Pose(0.5))
+    assert moved == []
+    assert_close(load_text(text).pose('m::tool::eye')[:3], (0.5, 0.0, 0.0))
+
+
+def test_a_frame_does_not_move_in_one_that_moves_with_it(change):
+    with pytest.raises(SdfError, match='m::tool'):
+        change('tool', Pose(0.5), 'r/tool/eye_optical')
 
 
 def test_a_file_that_is_not_what_is_published(change):

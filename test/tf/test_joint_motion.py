@@ -19,6 +19,7 @@ from sdf_pose_bridge import Kind
 from sdf_pose_bridge.geometry.poses import pose_products
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.tf.anchors import AnchorModels
+from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.joint_motion import JointMotion
 from sdf_pose_bridge.tf.joint_positions import JointPositions, UnreportedJoints
 from sdf_pose_bridge.tf.lookup import PoseLookup
@@ -50,13 +51,17 @@ def two_links(joint_type, content='', joint_pose=''):
         f'{content}</joint>', version='1.11')
 
 
-def test_a_fixed_joint_has_no_degree_of_freedom():
-    assert not motion_of(two_links('fixed'))[1].dofs
-
-
-def test_a_static_model_does_not_move():
-    text = two_links('revolute').replace('<link', '<static>true</static><link', 1)
-    assert not motion_of(text)[1].dofs
+@pytest.mark.parametrize(('text', 'names'), [
+    (two_links('fixed'), []),
+    (two_links('revolute').replace('<link', '<static>true</static><link', 1), []),
+    (model_file("""
+        <link name="a"/>
+        <link name="b"/>
+        <joint name="x" type="revolute"><parent>a</parent><child>b</child></joint>
+        <joint name="y" type="revolute"><parent>a</parent><child>b</child></joint>"""), ['x'])],
+    ids=['a fixed joint', 'a static model', 'the last joint of a loop'])
+def test_joints_that_move(text, names):
+    assert [dof.name for dof in motion_of(text)[1].dofs] == names
 
 
 SLIDING = '<parent>{}</parent><child>{}</child><axis><xyz>1 0 0</xyz></axis>'
@@ -70,16 +75,6 @@ SLIDING = '<parent>{}</parent><child>{}</child><axis><xyz>1 0 0</xyz></axis>'
 ], ids=['the link of its parent frame backwards', 'a model'])
 def test_a_joint_moves(text, name, x):
     assert_same_pose(poses_at(text, {'j': 2.0})[name], matrix_from_degrees(x, 0, 0))
-
-
-def test_the_last_joint_of_a_loop_moves_nothing():
-    joints = """
-        <joint name="x" type="revolute"><parent>a</parent><child>b</child></joint>
-        <joint name="y" type="revolute"><parent>b</parent><child>c</child></joint>
-        <joint name="z" type="revolute"><parent>a</parent><child>c</child></joint>"""
-    links = ''.join(f'<link name="{name}"/>' for name in 'abc')
-    scene, motion = motion_of(model_file(links + joints))
-    assert [scene.names[each.joint.element] for each in motion.dofs] == ['m::x', 'm::y']
 
 
 @given(st.data(), st.integers(2, 7))
@@ -128,22 +123,15 @@ def moving_ids(tree):
     return [tree.frame_ids[index] for index in tree.moving.indices]
 
 
-def test_nothing_moves_unless_it_is_asked_for():
-    assert tf_tree_from_scene(load_text(model_file(ARM))).moving is None
-
-
 def test_only_links_behind_joints_move_in_their_parents():
-    tree = moving_tree(model_file(ARM))
-    assert moving_ids(tree) == ['b', 'c']
+    tree = moving_tree(model_file(ARM), frame_names=FrameNames.SCOPED)
+    assert tree.moving.motion.names == ('m/j', 'm/k')
+    assert moving_ids(tree) == ['m/b', 'm/c']
     assert [tree.frame_ids[index] for index in tree.moving.posed_indices] == [
-        'b', 'b/s', 'c', 'b/s_optical']
+        'm/b', 'm/b/s', 'm/c', 'm/b/s_optical']
 
 
 def test_a_frame_moves_by_all_joints_up_to_the_next_published_frame():
-    tree = moving_tree(
-        model_file(ARM), kinds=frozenset({Kind.MODEL, Kind.SENSOR}),
-        anchor_models=AnchorModels.ALL)
-    assert moving_ids(tree) == ['b/s']
     text = model_file(ARM.replace(CAMERA, '') + '<frame name="f" attached_to="c"/>')
     tree = moving_tree(text, kinds=frozenset({Kind.FRAME}), anchor_models=AnchorModels.ALL)
     transform, = tree.moving.transforms(np.array([np.pi / 2, np.pi / 2]))
@@ -157,25 +145,15 @@ def test_a_model_that_is_not_anchored_has_no_transform_to_move():
     assert not moving_ids(moving_tree(text, anchor_models=AnchorModels.NONE))
 
 
-def test_quaternions_have_the_canonical_sign():
-    moving = moving_tree(model_file(ARM)).moving
-    positions = np.array([4.0, -4.0])
-    assert (moving.transforms(positions)[:, 6] > 0.0).all()
-    assert (moving.poses(positions)[:, 6] >= 0.0).all()
-
-
-def test_frames_that_move_with_the_pose_frame_stay_in_it():
-    tree = moving_tree(model_file(ARM), pose_frame='b')
-    posed = [tree.frame_ids[index] for index in tree.moving.posed_indices]
-    assert posed == ['m', 'a', 'c']
-    assert tree.pose_frame == 'b'
-
-
-@pytest.mark.parametrize('pose_frame', ['m', 'b', 'b/s', 'c'])
-def test_poses_in_the_pose_frame_are_those_that_a_lookup_finds(pose_frame):
-    scene = load_text(model_file(ARM))
-    tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True, pose_frame=pose_frame))
-    for positions in (np.zeros(2), np.array([0.5, -1.2])):
+@pytest.mark.parametrize('kinds', [frozenset(Kind), frozenset({Kind.SENSOR, Kind.FRAME})])
+@pytest.mark.parametrize('pose_frame', ['f', 'b/s'])
+def test_poses_in_the_pose_frame_are_those_that_a_lookup_finds(pose_frame, kinds):
+    scene = load_text(model_file(ARM + '<frame name="f"/>'))
+    tree = tf_tree_from_scene(
+        scene, TfOptions(use_joint_states=True, pose_frame=pose_frame, kinds=kinds))
+    assert tree.frame_ids.index(pose_frame) not in tree.moving.posed_indices
+    for positions in (np.zeros(2), np.array([4.0, -4.0])):
+        assert (tree.moving.transforms(positions)[:, 6] >= 0.0).all()
         poses = tree.poses_in_pose_frame.copy()
         poses[tree.moving.posed_indices] = tree.moving.poses(positions)
         lookup = PoseLookup(scene, tree, known_positions(scene, tree, positions))
@@ -192,6 +170,8 @@ def test_transforms_depend_on_what_they_cross():
             ([True, True], [True, True]), ([False, True], [False, True]),
             ([True, False], [True, True]), ([False, False], [False, False])):
         assert moving.depends_on(np.array(chosen)).tolist() == expected
+    moving = moving_tree(model_file(ARM)).moving
+    assert moving.depends_on(np.array([True, False])).tolist() == [True, False]
 
 
 @given(st.data(), st.integers(2, 7))

@@ -29,10 +29,10 @@ def model(name, content=''):
     return f'<model name="{name}">{ONE_JOINT}{content}</model>'
 
 
-def positions_of(text, model=''):
+def positions_of(text, *arguments, **options):
     scene = load_text(text)
     tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
-    return JointPositions(scene, tree.moving.motion, model)
+    return JointPositions(scene, tree.moving.motion, *arguments, **options)
 
 
 def update(positions, stamp_ns=0, **values):
@@ -61,10 +61,10 @@ def positions_in_model(content=ONE_JOINT):
 def test_leading_joints_are_in_file_order():
     joints = ''.join(
         joint(f'<parent>{ends[0]}</parent><child>{ends[1]}</child><axis/>', ends, 'revolute')
-        for ends in ('da', 'ae', 'db'))
+        for ends in ('da', 'db', 'ae'))
     scene = load_text(model_file(
         f'{LINKS}<link name="d"/><link name="e"/>{joints}{following("da")}', version='1.11'))
-    assert [dof.name for dof in leading_dofs(scene)] == ['da', 'ae', 'db']
+    assert [dof.name for dof in leading_dofs(scene)] == ['da', 'db', 'ae']
 
 
 # Names
@@ -79,11 +79,16 @@ def test_unknown_names(name):
 @pytest.mark.parametrize(('text', 'only_model', 'names', 'dofs'), [
     (model_file(LINKS + joint(ENDS, 'j', 'revolute')), '', ['j', 'm/j', 'm::j'], [0, 0, 0]),
     (world_file(model('x') + model('y')), '', ['y::j', 'j', 'y/j'], [1, 1]),
+    (world_file(f'{model("x")}</world><world name="v">{model("y")}'), '', ['y/j', 'j'], [0]),
+    (world_file(f'<model name="m">{ONE_JOINT}{model("m")}</model>'), '', ['m/j', 'm/m/j'], [0, 1]),
+    (world_file('<model name="n">' * 12 + ONE_JOINT + '</model>' * 12), '',
+     ['n::' * 12 + 'j', 'n::' * 11 + 'j', 'n::' * 9 + 'j'], [0, 0]),
     (world_file(model('x') + model('y') + model('yy')), 'y', ['j', 'x/j'], [1]),
     (model_file(LINKS + joint(ENDS, 'b', 'revolute') + joint(
         '<parent>b</parent><child>c</child>', 'k_joint', 'revolute'), version='1.6'),
      '', ['b_joint', 'b', 'k_joint', 'k'], [0, 0, 1]),
-], ids=['of a model file', 'of a world', 'of one of several models', 'of a joint that is renamed'])
+], ids=['of a model file', 'of a world', 'of one of two worlds', 'itself', 'deep',
+        'of one of several models', 'of a joint that is renamed'])
 def test_names(text, only_model, names, dofs):
     assert positions_of(text, only_model).selection(names).dofs.tolist() == dofs
 
@@ -117,15 +122,21 @@ def test_a_joint_with_several_degrees_of_freedom_is_missing_once():
                '<joint name="j" type="revolute"><parent>m::a</parent><child>n::a</child>'
                '<axis><xyz>0 0 1</xyz></axis></joint>'),
 ])
-def test_only_models_of_a_world_with_joints_that_move_are_listed(text):
+def test_only_models_of_a_world_with_joints_that_move_are_listed_or_one_that_was_spawned(text):
     assert positions_of(text).models == ()
+    spawned = positions_of(text, is_spawned=True)
+    assert spawned.models == (('m',) if text == model_file(ONE_JOINT) else ())
 
 
 def test_a_message_about_a_joint_is_one_about_all_joints_of_its_model():
     second = joint('<parent>b</parent><child>c</child>', 'k', 'revolute')
-    positions = positions_of(world_file(model('x', second) + model('y')))
-    update(positions, 5, **{'x/k': 0.5})
-    assert positions.stamps_ns.tolist() == [5, 5, -1]
+    follower = joint(
+        f'<parent>x::c</parent><child>y::c</child>{MIMIC.format("x::j")}', 'f', 'revolute')
+    positions = positions_of(world_file(
+        f'<model name="x">{LEADER}{second}</model>{model("y")}{follower}', version='1.11'))
+    for name, stamps_ns in (('x/k', [5, 5, -1, -1]), ('x/j', [5, 5, 5, -1])):
+        update(positions, 5, **{name: 0.5})
+        assert positions.stamps_ns.tolist() == stamps_ns
 
 
 def test_the_second_joint_that_a_screw_joint_has_in_urdf_is_not_unknown():
@@ -133,20 +144,6 @@ def test_the_second_joint_that_a_screw_joint_has_in_urdf_is_not_unknown():
         LINKS + joint(ENDS, 'j', 'screw')
         + joint('<parent>b</parent><child>c</child>', 'k', 'revolute'))
     assert positions.unknown(['j', 'j_slide', 'k_slide']) == ['k_slide']
-
-
-def test_the_name_of_a_joint_itself_comes_first():
-    positions = positions_in_model(ONE_JOINT + model('n'))
-    assert positions.selection(['j', 'n/j']).dofs.tolist() == [
-        positions.names.index('j'), positions.names.index('n/j')]
-
-
-def test_names_of_a_second_axis_and_of_a_ball_joint():
-    axes = '<axis><xyz>1 0 0</xyz></axis><axis2><xyz>0 1 0</xyz></axis2>'
-    positions = positions_in_model(
-        LINKS + joint(ENDS + axes, 'u', 'universal')
-        + joint('<parent>b</parent><child>c</child>', 'o', 'ball'))
-    assert set(positions.names) == {'u', 'u_axis2', 'o_roll', 'o_pitch', 'o_yaw'}
 
 
 # Positions
@@ -168,13 +165,6 @@ def test_a_wrong_position_leaves_the_others():
     assert positions.is_reported.tolist() == [False, True]
 
 
-def test_a_follower_moves_with_its_leader():
-    positions = positions_in_model(LEADER + following())
-    assert positions.values.tolist() == [0.0, 0.0]
-    update(positions, j=2.0)
-    assert values_of(positions) == {'j': 2.0, 'k': 4.0}
-
-
 def test_a_follower_stays_while_its_leader_has_no_position():
     positions = positions_in_model(LEADER + following())
     assert update(positions, j=np.nan) == ['j']
@@ -183,27 +173,23 @@ def test_a_follower_stays_while_its_leader_has_no_position():
     assert positions.unreported() == (['j'], [])
 
 
-def test_the_position_of_a_follower_can_be_given():
-    positions = positions_in_model(LEADER + following())
-    update(positions, k=7.0, j=2.0)
-    assert values_of(positions) == {'j': 2.0, 'k': 7.0}
-
-
-def test_a_follower_of_a_follower_moves_with_it_unless_that_is_too_far():
-    others = following('k', 'l', 'c', 'd') + following('j', 'i', 'c', 'e')
-    positions = positions_in_model(
-        LEADER + '<link name="d"/><link name="e"/>' + following() + others)
-    update(positions, j=2.0)
-    assert values_of(positions) == {'j': 2.0, 'k': 4.0, 'l': 8.0, 'i': 4.0}
-    update(positions, j=LARGEST_POSITION)
-    assert values_of(positions) == {'j': LARGEST_POSITION, 'k': 4.0, 'l': 8.0, 'i': 4.0}
-
-
-def test_joints_that_follow_one_another_stop():
-    positions = positions_in_model(
-        LINKS + joint(ENDS + MIMIC.format('k'), 'j', 'revolute') + following())
-    update(positions, j=2.0)
-    assert values_of(positions) == {'j': 2.0, 'k': 4.0}
+@pytest.mark.parametrize(('content', 'given', 'values'), [
+    (LEADER + following(), {'j': 2.0}, {'k': 4.0}),
+    (LEADER + following(), {'k': 7.0, 'j': 2.0}, {}),
+    (LINKS + joint(ENDS + MIMIC.format('k'), 'j', 'revolute') + following(), {'j': 2.0},
+     {'k': 4.0}),
+    (LEADER + '<link name="d"/><link name="e"/>' + following() + following('k', 'l', 'c', 'd')
+     + following('j', 'i', 'c', 'e'), {'j': 2.0}, {'k': 4.0, 'l': 8.0, 'i': 4.0}),
+], ids=['its leader', 'a given position', 'one another', 'a follower'])
+def test_a_joint_follows(content, given, values):
+    positions = positions_in_model(content)
+    assert not any(values_of(positions).values())
+    update(positions, 5, **given)
+    assert values_of(positions) == {**given, **values}
+    update(positions, 5, j=LARGEST_POSITION)
+    assert values_of(positions) == {**given, **values, 'j': LARGEST_POSITION}
+    update(positions, 3, j=1.0)
+    assert values_of(positions) == {**given, **values, 'j': LARGEST_POSITION}
 
 
 def test_joints_of_the_same_name_continue_in_another_scene():
@@ -250,13 +236,6 @@ def test_an_older_position_does_not_count():
     assert positions.stamps_ns.tolist() == [5, 3]
     update(positions, 5, **{'x/j': 0.75})
     assert values_of(positions)['x/j'] == 0.75
-
-
-def test_a_follower_does_not_follow_an_older_position():
-    positions = positions_in_model(LEADER + following())
-    update(positions, 5, j=2.0)
-    update(positions, 3, j=0.0)
-    assert values_of(positions) == {'j': 2.0, 'k': 4.0}
 
 
 def test_stamps_can_be_ignored_or_forgotten():
@@ -354,13 +333,6 @@ def test_a_model_does_not_take_over_the_position_of_a_joint():
     assert after.reported_count == 0
 
 
-def test_the_model_of_a_file_that_was_spawned_has_a_scope():
-    scene = load_text(model_file(ONE_JOINT))
-    motion = tf_tree_from_scene(scene, TfOptions(use_joint_states=True)).moving.motion
-    assert JointPositions(scene, motion).models == ()
-    assert JointPositions(scene, motion, is_spawned=True).models == ('m',)
-
-
 # Scenes at a configuration
 
 def limited(limit=''):
@@ -387,7 +359,8 @@ def test_a_scene_at_a_configuration_has_other_poses():
 
 
 def test_a_position_beyond_its_limits_is_warned_of():
-    before = limited('<limit><lower>-1</lower><upper>1</upper></limit>')
-    assert not scene_at_positions(before, {'j': 1.0}).warnings
-    warning, = scene_at_positions(before, {'j': 1.5}).warnings
+    before = limited('<limit><lower>-1</lower><upper>1</upper></limit><odd/>')
+    assert scene_at_positions(before, {'j': 1.0}).warnings == before.warnings
+    *others, warning = scene_at_positions(before, {'j': 1.5}).warnings
+    assert (*others,) == before.warnings != ()
     assert '1.5 of "j" is beyond its limits, -1 to 1' in warning.message

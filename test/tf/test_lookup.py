@@ -41,8 +41,8 @@ def lookup_in(text, **options):
 
 
 ARM = world_file(
-    '<model name="m"><link name="base"/><link name="upper"/><link name="hand"/><frame name="tool" '
-    'attached_to="hand"/>'
+    '<model name="m"><link name="base"/><link name="upper"><sensor name="eye" type="camera"/>'
+    '</link><link name="hand"/><frame name="tool" attached_to="hand"/>'
     + joint('<parent>base</parent><child>upper</child>', 'elbow', 'revolute')
     + joint('<parent>upper</parent><child>hand</child>', 'wrist', 'revolute') + '</model>')
 
@@ -51,6 +51,7 @@ ARM = world_file(
     ('m/upper', 'm', [], 'joint "m/elbow"'), ('m/upper', 'm/tool', ['elbow'], 'joint "m/wrist"'),
     ('m/tool', 'm/base', ['wrist'], 'joint "m/elbow"'), ('m/tool', 'm/hand', [], ''),
     ('m/base', 'm/upper', [], 'joint "m/elbow"'), ('m/base', 'm', [], ''),
+    ('m/upper/eye_optical', 'm', [], 'joint "m/elbow"'),
     ('m::hand', 'm::upper', ['wrist'], ''), ('m/tool', 'm', ['elbow', 'wrist'], ''),
     ('m', '', ['elbow'], 'the pose of model "m"'), ('world', 'm', [], 'the pose of model "m"')])
 def test_a_pose_behind_a_joint_or_of_a_model_needs_its_position(
@@ -94,6 +95,7 @@ def test_poses_by_the_names_of_sdf_and_of_tf(lookup, frame, relative_to, expecte
     assert found.pose.qw >= 0.0
     assert found.frame_id == frame_id
     assert lookup.knows(frame)
+    assert lookup.is_frame_id(frame) is frame.startswith('left/')
     if frame != 'map':
         element, in_element = lookup.element(frame)
         pose = pose_product(lookup.pose_of_element(element, relative_to), in_element)
@@ -133,8 +135,15 @@ def test_where_a_text_is_both_the_name_of_sdf_is_meant():
 
 
 def test_a_model_file_is_looked_up_from_its_root():
-    found = lookup_in(model_file('<link name="a"><pose>1 0 0 0 0 0</pose></link>')).pose('m::a')
-    assert (found.pose.x, found.frame_id) == (1.0, 'world')
+    text = model_file('<link name="a"><pose>1 0 0 0 0 0</pose></link>')
+    lookup = lookup_in(text, root_frame='map')
+    found = lookup.pose('m::a')
+    assert (found.pose.x, found.frame_id) == (1.0, 'map')
+    assert lookup.pose_of_element(lookup.element('m::a')[0]).x == 1.0
+    scene = load_text('<robot name="r"><link name="world"/></robot>')
+    tree = tf_tree_from_scene(scene, TfOptions(frame_prefix='r/'))
+    assert tree.kind_labels(scene) == [Kind.ROOT.label]
+    assert PoseLookup(scene, tree).element('r/world')[0] == 0
 
 
 def test_only_the_world_that_is_published_is_looked_up():
@@ -145,6 +154,8 @@ def test_only_the_world_that_is_published_is_looked_up():
     assert lookup.pose('world').frame_id == 'world'
     with pytest.raises(UnknownFrameError, match='"g"'):
         lookup.pose('g')
+    text = '<sdf version="1.10"><model name="m"><link name="l"/></model><world name="w"/></sdf>'
+    assert lookup_in(text).pose('m::l').frame_id == 'world'
 
 
 @pytest.mark.parametrize('text', [
