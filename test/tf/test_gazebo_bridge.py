@@ -73,32 +73,41 @@ def test_robots_do_not_meet():
     text = world_file(''.join(model(f'r{i}', content) for i in robots))
     names = names_in(text)
     assert len(names) == len(set(names.values())) == 30 * 5
+    assert [*names][4] == '/r0/k/s/imu'
     assert names['/r7/joint_states'] == '/world/w/model/r7/joint_state'
     assert names['/r7/k/s/imu'] == '/world/w/model/r7/link/k/sensor/s/imu'
     assert parameters_of(text) == [['/{model}/joint_states'], ['/{model}/odometry'], []]
+    assert topics_in(text)[1]['model_name'] == ''
 
 
 def test_a_topic_of_several_robots_keeps_its_name_and_is_told():
     text = world_file(''.join(
         model(name, f'<link name="k">{IMU.format("<topic>i</topic>")}</link>') for name in 'ab'))
     (_, topic), _ = topics_in(text)
-    assert (topic.ros_name, topic.gz_name) == ('/i', '/i')
+    assert (topic.ros_name, topic.gz_name, topic.pattern) == ('/i', '/i', '/i')
     assert 'the topic /i belongs to "a::k::s", "b::k::s"' in topic.doubt.message
 
 
 def test_names_that_ros_forbids_are_escaped_as_by_the_node():
-    text = world_file(model('my robot-1', model('2', plugin('DiffDrive') + JOINTS) + JOINTS))
+    text = world_file(model('2', model('2', plugin('DiffDrive') + JOINTS) + JOINTS))
     assert names_in(text, ('joints',)) == {
-        '/my_x20_robot_x2d_1/joint_states': '/world/w/model/my_robot-1/joint_state',
-        '/my_x20_robot_x2d_1/x32_/joint_states': '/world/w/model/my_robot-1/model/2/joint_state'}
+        '/x32_/joint_states': '/world/w/model/2/joint_state',
+        '/x32_/x32_/joint_states': '/world/w/model/2/model/2/joint_state'}
     assert parameters_of(text) == [
         ['/{model}/joint_states', '/{model}/x32_/joint_states'], ['/{model}/odometry'], []]
 
 
-def test_plugins_of_one_class_in_one_model():
-    text = world_file(model('a', ''.join(
-        plugin('JointTrajectoryController', f'<topic>{topic}</topic>') for topic in 'xyy')))
-    assert names_in(text) == {'/a/joint_trajectory': '/x', '/a/joint_trajectory_1': '/y'}
+def test_plugins_in_one_model():
+    namespace = '<robotNamespace>r</robotNamespace><namespace>n</namespace>'
+    thrusters = ''.join(
+        plugin('Thruster', f'<topic>{topic}</topic><joint_name>{name}</joint_name>{namespace}')
+        for topic, name in ('xj', 'yj', 'yk'))
+    others = (
+        plugin('JointTrajectoryController', '<topic>n/x</topic><topic>z</topic><model>z</model>')
+        + plugin('JointPositionController', '<joint_name>i</joint_name>'))
+    assert names_in(world_file(model('a', thrusters + others))) == {
+        '/a/j/cmd_thrust': '/n/x', '/a/j/cmd_thrust_1': '/n/y', '/a/joint_trajectory': '/n/x',
+        '/a/i/cmd_pos': '/model/a/joint/i/0/cmd_pos'}
 
 
 @pytest.mark.parametrize(('contents', 'poses'), [
@@ -107,10 +116,10 @@ def test_plugins_of_one_class_in_one_model():
     ({'a': 'DiffDrive OdometryPublisher', 'b': 'DiffDrive'},
      ['/b/odometry', '/{model}/odometry_1']),
     ({'a': 'DiffDrive PosePublisher'}, ['/{model}/odometry']),
-    ({'a': 'DiffDrive PosePublisher publish_model_pose'}, ['/{model}/pose']),
+    ({'a': 'DiffDrive OdometryPublisher PosePublisher publish_model_pose'}, ['/{model}/pose']),
     ({'a': 'PosePublisher publish_nested_model_pose use_pose_vector_msg'}, ['/{model}/pose']),
     ({'a': 'PosePublisher publish_model_pose static_publisher'}, ['/{model}/pose_static']),
-    ({'a': 'AckermannSteering steering_only'}, []),
+    ({'a': 'AckermannSteering steering_only'}, []), ({'a': 'Thruster publish_model_pose'}, []),
 ])
 def test_the_node_follows_the_best_source_of_each_model(contents, poses):
     def plugins(name, words):
@@ -119,7 +128,7 @@ def test_the_node_follows_the_best_source_of_each_model(contents, poses):
             plugin(each, f'{flags}<odom_topic>{each}{name}</odom_topic>')
             for each in words.split() if not each.islower())
     text = world_file(''.join(model(each[0], plugins(*each)) for each in contents.items()))
-    assert parameters_of(text)[1] == poses
+    assert parameters_of(text)[1:] == [poses, []]
 
 
 def test_a_spawned_model():
@@ -130,6 +139,7 @@ def test_a_spawned_model():
     assert parameters_of(text, GROUPS, 'shop', 'm_2') == [
         ['/{model}/joint_states'], ['/{model}/pose'], ['shop']]
     assert topics_in(text, GROUPS, 'shop', 'm_2')[1]['model_name'] == 'm_2'
+    assert parameters_of(text.replace('true', 'false'), GROUPS, 'shop')[1:] == [[], []]
 
 
 def test_only_the_first_world_counts():
@@ -141,9 +151,9 @@ def test_only_the_first_world_counts():
 def test_each_bridged_topic_has_a_type_in_ros():
     sensors = ''.join(
         f'<sensor name="{each}" type="{each}"/>' for each in (
-            'camera', 'depth', 'rgbd_camera', 'segmentation', 'boundingbox_camera', 'thermal',
-            'gpu_lidar', 'imu', 'navsat', 'altimeter', 'air_pressure', 'magnetometer',
-            'force_torque', 'contact', 'lidar', 'logical_camera', 'air_speed'))
+            'camera depth rgbd_camera segmentation boundingbox_camera thermal gpu_lidar imu '
+            'navsat altimeter air_pressure magnetometer force_torque contact lidar '
+            'logical_camera air_speed').split())
     topics, _ = topics_in(world_file(model('a', f'<link name="k">{sensors}</link>')))
     assert {each.topic.gz_type for each in topics if not each.topic.reason} <= ROS_TYPES.keys()
     assert len(topics) > 20

@@ -15,7 +15,7 @@ from joint_trees import model_text, pose_text, POSES, POSITIONS, random_joints
 from matrices import assert_close, matrix_from_pose
 from random_scenes import random_scenes
 
-from sdf_pose_bridge import Kind, load_text, scene_at_positions, SdfError, UnknownFrameError
+from sdf_pose_bridge import Kind, load_text, scene_at_positions, SdfError
 from sdf_pose_bridge.errors import UrdfNotMadeError
 from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.frame_ids import FrameNames
@@ -58,18 +58,16 @@ def tree_of(text, **options):
 
 # What is refused
 
-@pytest.mark.parametrize(('content', 'reason'), [
-    ('', 'the file has no model'),
-    (MODEL.format('a') + MODEL.format('b'), 'the file has the models "a", "b"; choose one'),
-])
-def test_world_without_one_model_is_refused(content, reason):
-    with pytest.raises(UrdfNotMadeError, match=reason):
-        robot_of(world_file(content))
-
-
-def test_unknown_model_is_refused():
-    with pytest.raises(UnknownFrameError, match='no model "c"'):
-        robot_of(world_file(MODEL.format('a')), model='c')
+@pytest.mark.parametrize(('text', 'model', 'reason'), [
+    (world_file(''), '', 'URDF_NOT_MADE: .* the file has no model'),
+    (world_file(MODEL.format('a') + MODEL.format('b')), '', 'the models "a", "b"; choose one'),
+    (world_file(MODEL.format('a')), 'c', 'UNKNOWN_FRAME: there is no model "c"'),
+    (model_file(f'<link name="a/b"/><model name="a"><link name="b"/>{LINK}</model>'), '',
+     'DUPLICATE_NAME'),
+    ('<robot name="r"><link name="l"/></robot>', '', 'URDF_NOT_MADE: the file is URDF already')])
+def test_what_has_no_urdf_is_refused(text, model, reason):
+    with pytest.raises(SdfError, match=reason):
+        robot_of(text, model=model)
 
 
 def test_names_that_would_fill_the_memory_are_refused():
@@ -78,17 +76,6 @@ def test_names_that_would_fill_the_memory_are_refused():
     robot_of(text)
     with pytest.raises(UrdfNotMadeError, match='characters together'):
         robot_of(text, frame_names=FrameNames.SCOPED)
-
-
-def test_two_links_with_one_name_are_refused():
-    text = model_file(f'<link name="a/b"/><model name="a"><link name="b"/>{LINK}</model>')
-    with pytest.raises(SdfError, match='DUPLICATE_NAME'):
-        robot_of(text)
-
-
-def test_urdf_is_refused():
-    with pytest.raises(UrdfNotMadeError, match='is URDF already'):
-        robot_of('<robot name="r"><link name="l"/></robot>')
 
 
 # One tree
@@ -102,8 +89,9 @@ TREES = {
         model_file(f'<static>1</static>{TWO_LINKS}{joint("revolute")}'), {'root_frame': 'map'},
         {'map': None, 'a': ('map', 'a_fixed'), 'm': ('a', 'm_fixed'), 'b': ('a', 'j')}),
     'a joint to the world begins at the world': (
-        model_file(f'{LINK}{joint("prismatic", parent="world", child="l")}'), {},
-        {'world': None, 'l': ('world', 'j'), 'm': ('l', 'm_fixed')}),
+        model_file(LINK + joint('prismatic', parent='world', child='l', pose='1 0 0 0 0 0')),
+        {'root_frame': 'j_frame'}, {'j_frame': None, 'j_frame_1': ('j_frame', 'j'),
+                                    'l': ('j_frame_1', 'l_fixed'), 'm': ('l', 'm_fixed')}),
     'one of the models of a world': (
         TWO_MODELS, {'model': 'b'}, {'b/l': None, 'b': ('b/l', 'b_fixed')}),
     'the only model of a world need not be named': (
@@ -111,6 +99,11 @@ TREES = {
     'a nested model begins at its own canonical link': (
         model_file(f'{LINK}{joint("revolute", parent="l", child="n::l")}{MODEL.format("n")}'),
         {'model': 'm::n'}, {'n/l': None, 'n': ('n/l', 'n_fixed')}),
+    'a joint to a link around the model does not move': (
+        model_file(LINK + joint('revolute', parent='l', child='n::b', pose='1 0 0 0 0 0')
+                   + f'<model name="n">{TWO_LINKS}</model>'),
+        {'model': 'm::n'}, {'world': None, 'n/a': ('world', 'n/a_fixed'),
+                            'n': ('n/a', 'n_fixed'), 'n/b': ('world', 'j')}),
     'links are there whatever the kinds are': (
         model_file(TWO_LINKS), {'kinds': frozenset({Kind.FRAME})},
         {'a': None, 'b': ('a', 'b_fixed')}),
@@ -118,8 +111,12 @@ TREES = {
         model_file(f'<model name="n">{MOVING}</model>'),
         {'frame_separator': '_', 'kinds': frozenset({Kind.LINK})},
         {'n_a': None, 'n/j_frame': ('n_a', 'n/j'), 'n_b': ('n/j_frame', 'n_b_fixed')}),
-    'the prefix of frames is left out': (
-        model_file(LINK), {'frame_prefix': 'r/'}, {'l': None, 'm': ('l', 'm_fixed')}),
+    'what only the node does is left out': (
+        model_file(TWO_LINKS + joint('revolute', pose='0 1 0 0 0 0')),
+        {'frame_prefix': 'r/', 'pose_frame': 'x', 'anchor_models': AnchorModels.NONE,
+         'use_joint_states': True, 'follows_models': True, 'has_joint_links': True,
+         'others': ('x',)},
+        {'a': None, 'm': ('a', 'm_fixed'), 'j_frame': ('a', 'j'), 'b': ('j_frame', 'b_fixed')}),
     'a joint that is a frame is a link too': (
         model_file(MOVING), {'kinds': frozenset({Kind.LINK, Kind.JOINT})},
         {'a': None, 'j_frame': ('a', 'j'), 'b': ('j_frame', 'b_fixed'), 'j': ('b', 'j_fixed')}),
@@ -130,6 +127,10 @@ TREES = {
 @pytest.mark.parametrize(('text', 'options', 'tree'), TREES.values(), ids=TREES)
 def test_tree(text, options, tree):
     assert tree_of(text, **options) == tree
+    robot = robot_of(text, **options)
+    assert '::' not in robot.name
+    elements = [link.element for link in robot.links if link.element >= 0]
+    assert len({*elements}) == len(elements)
 
 
 def test_links_stand_before_all_that_are_not_below_them():
@@ -142,8 +143,9 @@ def test_second_tree_is_fixed_to_the_world_with_a_warning():
     robot = robot_of(model_file(f'{TWO_LINKS}{joint("revolute", parent="world")}'))
     (warning,) = robot.warnings
     assert '"a" is fixed to "world" in URDF' in warning.message
-    assert {link.name for link in robot.links if link.joint and link.joint.parent == 'world'} == {
-        'a', 'b'}
+    assert robot.links[0] == ('world', -1, None)
+    assert {link.name: link.joint.type for link in robot.links[1:]
+            if link.joint.parent == 'world'} == {'a': 'fixed', 'b': 'continuous'}
 
 
 def test_loop_is_cut_with_a_warning():
@@ -216,14 +218,12 @@ def mimic(leader, multiplier, offset=0, reference=0):
             f'<offset>{offset}</offset><reference>{reference}</reference></mimic>')
 
 
-def test_mimic_has_no_reference_in_urdf():
-    joints = joints_of(followers('', mimic('j0', 2, 5, 1)))
-    assert joints['j1'].mimic == ('j0', 2, 3)
-
-
-def test_follower_of_a_follower_follows_its_leader():
-    joints = joints_of(followers('', mimic('j0', 2, 5, 1), mimic('j1', 10, 1)))
-    assert joints['j2'].mimic == ('j0', 20, 31)
+@pytest.mark.parametrize(('mimics', 'expected'), [
+    ([mimic('j0', 2, 5, 1), mimic('j1', 10, 1)], [('j0', 2, 3), ('j0', 20, 31)]),
+    ([mimic('j2', 10, 1), mimic('j0', 2, 5, 1)], [('j0', 20, 31), ('j0', 2, 3)])])
+def test_mimic_has_no_reference_and_names_the_first_leader(mimics, expected):
+    joints = joints_of(followers('', *mimics))
+    assert [joints[name].mimic for name in ('j1', 'j2')] == expected
 
 
 def test_joints_that_follow_one_another_follow_nothing():

@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The text of URDF: links with masses and shapes, limits of joints, and what is left out."""
 
+import re
+
 from lxml import etree
 import pytest
-from sdf_texts import link_with, model_file, write_files
+from sdf_texts import fixed_joint, link_with, model_file, world_file, write_files
 
-import sdf_pose_bridge
-from sdf_pose_bridge import load, load_text, urdf_from_scene
+from sdf_pose_bridge import Kind, load, load_text, urdf_from_scene
 from sdf_pose_bridge.sdformat.shape_types import SHAPE_TYPES
 
 BOX = '<box><size>1 2 3</size></box>'
@@ -52,6 +53,10 @@ def test_scene_without_shapes_is_refused():
         urdf_from_scene(load_text(link_with('')))
 
 
+LOOP = (f'</link><link name="k"/>{fixed_joint("i", "l", "k")}{fixed_joint("j", "l", "k")}'
+        '<link name="o">')
+
+
 @pytest.mark.parametrize(('content', 'reason'), [
     (part('visual', '<mesh><uri>none.stl</uri></mesh>'),
      'the visual "m::l::v" is left out: the mesh "none.stl" is not found'),
@@ -65,6 +70,8 @@ def test_scene_without_shapes_is_refused():
      'the visual "m::l::v" is left out: a polyline is not supported'),
     ('<inertial><mass>-1</mass></inertial>',
      'the inertial "m::l::inertial" is left out: no body can have its moments'),
+    (LOOP, ('joint "m::j" closes a loop between "m::l" and "m::k"; TF is a tree, so it moves '
+            'nothing there')),
 ])
 def test_what_cannot_be_said_is_left_out_with_a_warning(content, reason):
     urdf = urdf_of(link_with(f'\n{content}'))
@@ -106,6 +113,7 @@ def test_part_of_a_mesh_cannot_be_named(tmp_path):
 def test_shapes(geometry, elements):
     xml = xml_of(link_with(part('collision', geometry)))
     assert [described(each)[0] for each in xml.iter('geometry')] == elements
+    assert [described(each) for tag in ('material', 'inertial') for each in xml.iter(tag)] == []
 
 
 def test_ends_of_a_capsule_are_in_its_axes():
@@ -118,11 +126,13 @@ def test_ends_of_a_capsule_are_in_its_axes():
         (5, 0, 0), (3, 0, 0), (7, 0, 0))]
 
 
-def test_capsule_of_urdf_1_2():
-    capsule = '<capsule><radius>1</radius><length>4</length></capsule>'
+@pytest.mark.parametrize(('length', 'element'), [
+    (4, ('capsule', {'radius': '1', 'length': '4'})), (0, ('sphere', {'radius': '1'}))])
+def test_capsule_of_urdf_1_2(length, element):
+    capsule = f'<capsule><radius>1</radius><length>{length}</length></capsule>'
     xml = xml_of(link_with(part('collision', capsule)), has_capsules=True)
     assert xml.get('version') == '1.2'
-    assert described(xml.find('.//geometry')) == [('capsule', {'radius': '1', 'length': '4'})]
+    assert described(xml.find('.//geometry')) == [element]
 
 
 @pytest.mark.parametrize(('material', 'rgba'), [
@@ -131,14 +141,10 @@ def test_capsule_of_urdf_1_2():
      '1 0.5 0 0.25'),
     ('', '0.7 0.7 0.7 1'),
 ])
-def test_visual_has_a_color(material, rgba):
-    xml = xml_of(link_with(part('visual', BOX, material)))
-    assert described(xml.find('.//material')) == [('color', {'rgba': rgba})]
-
-
-def test_mesh_has_its_own_materials():
-    xml = xml_of(link_with(part('visual', '<mesh><uri>package://p/a.dae</uri></mesh>')))
-    assert xml.find('.//material') is None
+def test_visual_has_a_color_unless_its_mesh_has_materials(material, rgba):
+    mesh = part('visual', '<mesh><uri>package://p/a.dae</uri></mesh>')
+    xml = xml_of(link_with(part('visual', BOX, material) + mesh.replace('"v"', '"w"')))
+    assert [described(each) for each in xml.iter('material')] == [[('color', {'rgba': rgba})]]
 
 
 def test_inertial():
@@ -149,16 +155,7 @@ def test_inertial():
         ('origin', {'xyz': '1 2 3', 'rpy': '0 0 0'}), ('mass', {'value': '4'}),
         ('inertia', {'ixx': '1.1', 'ixy': '0.1', 'ixz': '0.2', 'iyy': '1.2', 'iyz': '0.3',
                      'izz': '1.3'})]
-
-
-def test_link_without_an_inertial_has_none():
-    assert xml_of(link_with(part('collision', BOX))).find('.//inertial') is None
-
-
-def test_automatic_inertial():
-    density = '<density>2</density>'
-    xml = xml_of(link_with(f'<inertial auto="true"/>{part("collision", BOX, density)}'))
-    assert xml.find('.//mass').get('value') == '12'
+    assert [*xml.find('.//inertia').attrib] == ['ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz']
 
 
 # Joints
@@ -178,10 +175,12 @@ def test_limits(joint_type, content, limit):
     assert joint_of(content, joint_type).get('limit') == limit
 
 
-def test_dynamics():
-    content = '<dynamics><damping>.1</damping></dynamics>'
-    assert joint_of(content)['dynamics'] == {'damping': '0.1', 'friction': '0'}
-    assert 'dynamics' not in joint_of('')
+@pytest.mark.parametrize('dynamics', [
+    {'damping': '0.1', 'friction': '0'}, {'damping': '0', 'friction': '0.1'}])
+def test_dynamics(dynamics):
+    content = ''.join(f'<{tag}>{value}</{tag}>' for tag, value in dynamics.items())
+    assert joint_of(f'<dynamics>{content}</dynamics>')['dynamics'] == dynamics
+    assert joint_of('').keys() == {'parent', 'child', 'axis'}
 
 
 def test_mimic():
@@ -201,14 +200,8 @@ def test_mimic():
 def test_numbers_have_no_more_digits_than_say_the_same():
     text = model_file(
         '<link name="a"><pose>0.1 -0.0 0 0 0 0</pose></link>'
-        '<link name="b"><pose relative_to="a">0.2 0 0 0 0 1e-17</pose></link>')
-    assert 'xyz="0.2 0 0" rpy="0 0 0"' in urdf_of(text).text
-
-
-def test_text_is_the_same_each_time():
-    text = model_file(TWO_LINKS + '<frame name="f"/><ros2_control name="c"/>')
-    assert urdf_of(text) == urdf_of(text)
-    assert str(urdf_of(text)) == urdf_of(text).text
+        '<link name="b"><pose relative_to="a">0.2 0 0 0 0 -1e-17</pose></link>')
+    assert 'xyz="0.2 0 0" rpy="0 0 0"' in str(urdf_of(text))
 
 
 def test_names_are_escaped():
@@ -221,27 +214,27 @@ def test_names_are_escaped():
 
 def test_elements_of_urdf_are_passed_on():
     control = '<ros2_control name="c">\n  <hardware> a\nb </hardware>\n</ros2_control>'
-    urdf = urdf_of(model_file(
-        f'{TWO_LINKS}{control}<model name="n"><link name="l"/><gazebo reference="l"/></model>'))
+    nested = '<model name="n"><link name="l"/><gazebo reference="l"/></model>'
+    urdf = urdf_of(world_file(
+        f'<model name="m">{TWO_LINKS}{control}{nested}</model><model name="o">{nested}</model>'),
+        model='m')
     assert f'\n{control}\n<gazebo reference="l"/>\n</robot>\n' in urdf.text
 
 
 def test_files_that_links_come_from_are_named(tmp_path):
     write_files(tmp_path, outer=model_file(
-        f'{TWO_LINKS}<include><uri>inner.sdf</uri><name>n</name></include>'),
-        inner=model_file('<link name="l"/>'))
+        f'<include><uri>inner-</uri><name>n</name></include>{TWO_LINKS}'))
+    (tmp_path / 'inner-').write_text(model_file('<link name="l"/><link name="k"/>'))
     scene = load(tmp_path / 'outer.sdf', shapes=True)
-    lines = urdf_from_scene(scene).text.splitlines()
-    assert f'sdf_pose urdf from {tmp_path}/outer.sdf' in lines[2]
-    assert lines[lines.index('  <link name="n/l"/>') - 1] == (
-        f'  <!-- From {tmp_path}/inner.sdf -->')
+    text = urdf_from_scene(scene).text
+    assert f'sdf_pose urdf from {tmp_path}/outer.sdf' in text.splitlines()[2]
+    assert re.findall('<!-- From (.*) -->\n  <link name="(.*)"/>', text) == [
+        (f'{tmp_path}/inner-', 'n/l'), (f'{tmp_path}/outer.sdf', 'b')]
 
 
-def test_camera_has_an_optical_frame():
-    text = link_with('<sensor name="s" type="camera"/>')
+def test_links_have_the_names_and_kinds_of_the_options():
+    text = model_file('<static>1</static><link name="l"><sensor name="s" type="camera"/></link>')
     assert 'link name="l/s_optical"' in urdf_of(text).text
-    assert 'optical' not in urdf_of(text, optical_frames=False).text
-
-
-def test_function_is_in_the_package():
-    assert sdf_pose_bridge.urdf_from_scene is urdf_from_scene
+    xml = xml_of(text, kinds={Kind.SENSOR}, frame_names='scoped', frame_separator='.',
+                 optical_frames=False, root_frame='map')
+    assert [each.get('name') for each in xml.iter('link')] == ['map', 'm.l', 'm.l.s']

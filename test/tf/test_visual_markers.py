@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Markers of visuals: which there are, in which frame, and what they look like."""
 
-from pathlib import Path
-
 import pytest
 from sdf_texts import link_with, model_file, world_file
 from tf_checks import model
@@ -12,14 +10,18 @@ from sdf_pose_bridge import load_text
 from sdf_pose_bridge.errors import UnknownFrameError
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
+from sdf_pose_bridge.sdformat.limits import MissingInclude
 from sdf_pose_bridge.tf import visual_markers
 from sdf_pose_bridge.tf.anchors import AnchorModels
+from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadRequest
 from sdf_pose_bridge.tf.loading import loaded_scene_from_request
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 from sdf_pose_bridge.tf.visual_markers import markers_from_text, visual_markers_from_scene
 
 BOX = '<box><size>1 2 3</size></box>'
+CAPSULE = '<capsule><radius>1</radius><length>4</length></capsule>'
+LYING = '<pose degrees="true">0 0 2 0 90 0</pose>'
 MESH = '<mesh><uri>{}</uri>{}</mesh>'
 
 
@@ -31,11 +33,11 @@ def material(*rgba):
     return f'<material><diffuse>{" ".join(map(str, rgba))}</diffuse></material>'
 
 
-def markers_and_warnings(text, *, file='m.sdf', resource_paths=(), **options):
+def markers_and_warnings(text, *, file='m.sdf', **options):
     scene = load_text(text, str(file), shapes=True)
     tree = tf_tree_from_scene(scene, TfOptions(**options))
     return visual_markers_from_scene(
-        scene, tree, options.get('model', ''), resource_finder(resource_paths, {}))
+        scene, tree, options.get('model', ''), resource_finder((), {}))
 
 
 def markers_of(text, **options):
@@ -66,16 +68,12 @@ def test_visual_that_cannot_be_shown_has_a_warning(geometry, reason):
 
 
 def test_visual_of_many_instances_has_one_warning():
-    models = ''.join(
+    models = [
         model(name, f'<link name="l">{visual(MESH.format("none.stl", ""))}</link>')
-        for name in 'abc')
-    _, (warning,) = markers_and_warnings(world_file(models))
+        for name in ('a', 'b', 'c', '\nd')]
+    _, (warning, _) = markers_and_warnings(world_file(''.join(models)))
     assert warning.message.startswith(
         'the visual "a::l::v" is not shown, like 2 more: the mesh "none.stl" is not found: ')
-
-
-def test_visual_without_a_geometry_has_no_marker():
-    assert markers_of(link_with('<visual name="v"/>')) == []
 
 
 def test_unknown_model_is_an_error():
@@ -85,23 +83,21 @@ def test_unknown_model_is_an_error():
 
 
 def test_visual_whose_link_has_no_frame_has_a_warning():
-    markers, (warning,) = markers_and_warnings(
-        link_with(visual(BOX)), kinds=frozenset({Kind.MODEL}), anchor_models=AnchorModels.NONE)
+    content = visual(BOX) + visual(MESH.format('none.stl', ''), name='w')
+    markers, warnings = markers_and_warnings(
+        link_with(content), kinds=frozenset({Kind.MODEL}), anchor_models=AnchorModels.NONE)
     assert markers == []
-    assert 'neither its link nor a frame above that in TF is published' in str(warning)
+    for warning, reason in zip(warnings, (
+            'neither its link nor a frame above that in TF is published',
+            'the mesh "none.stl" is not found'), strict=True):
+        assert reason in str(warning)
 
 
-def test_number_of_markers_is_limited(monkeypatch):
-    monkeypatch.setattr(visual_markers, 'MOST_MARKERS', 2)
-    content = ''.join(visual(BOX, name=name) for name in 'abcd')
-    markers, (warning,) = markers_and_warnings(link_with(content))
-    assert len(markers) == 2
-    assert 'the visual "m::l::c" and all that follow are not shown' in str(warning)
-
-
-def test_number_of_points_is_limited(monkeypatch):
-    monkeypatch.setattr(visual_markers, 'MOST_POINTS', 17)
-    content = ''.join(visual('<plane/>', name=name) for name in 'abcd')
+@pytest.mark.parametrize(('limit', 'most', 'geometry'), [
+    ('MOST_MARKERS', 2, BOX), ('MOST_POINTS', 12, '<plane/>')])
+def test_number_of_markers_is_limited(monkeypatch, limit, most, geometry):
+    monkeypatch.setattr(visual_markers, limit, most)
+    content = ''.join(visual(geometry, name=name) for name in 'abcd')
     markers, (warning,) = markers_and_warnings(link_with(content))
     assert len(markers) == 2
     assert 'the visual "m::l::c" and all that follow are not shown' in str(warning)
@@ -121,84 +117,54 @@ def test_shape_that_rviz_has(geometry, kind, scale):
     assert len(marker.points) == 0
 
 
-def test_mesh_beside_the_file_is_named_by_its_path(tmp_path):
+@pytest.mark.parametrize('is_relative', [False, True])
+def test_mesh_beside_the_file_is_named_by_its_path(tmp_path, monkeypatch, is_relative):
     folder = tmp_path / 'my robot #1'
     folder.mkdir()
     (folder / 'a.stl').touch()
+    monkeypatch.chdir(folder)
     marker = only_marker(
-        visual(MESH.format('a.stl', '<scale>1 2 -3</scale>')), file=folder / 'm.sdf')
+        visual(MESH.format('a.stl', '<scale>1 2 -3</scale>')),
+        file='m.sdf' if is_relative else folder / 'm.sdf')
     assert (marker.type, marker.scale) == ('MESH_RESOURCE', (1, 2, -3))
     assert marker.mesh_resource == f'file://{tmp_path}/my%20robot%20%231/a.stl'
-
-
-def test_mesh_beside_a_file_with_a_relative_path_is_named_by_its_absolute_path(
-        tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    Path('a.stl').touch()
-    marker = only_marker(visual(MESH.format('a.stl', '')), file='m.sdf')
-    assert marker.mesh_resource == (tmp_path / 'a.stl').as_uri()
-
-
-@pytest.mark.parametrize('uri', ['model://arm/meshes/a.dae', 'package:///arm/meshes/a.dae'])
-def test_mesh_of_a_model_is_found_in_the_resource_paths(uri, tmp_path):
-    mesh = tmp_path / 'arm/meshes/a.dae'
-    mesh.parent.mkdir(parents=True)
-    mesh.touch()
-    marker = only_marker(
-        visual(MESH.format(uri, '')), resource_paths=[tmp_path])
-    assert marker.mesh_resource == mesh.as_uri()
-
-
-def test_mesh_of_a_package_keeps_its_uri():
-    marker = only_marker(visual(MESH.format('package://none/a.stl', '')))
-    assert marker.mesh_resource == 'package://none/a.stl'
 
 
 def test_part_of_a_mesh_is_shown_whole_with_a_warning():
     submesh = '<submesh><name>lid</name></submesh>'
     (marker,), (warning,) = markers_and_warnings(
         link_with(visual(MESH.format('package://a/a.dae', submesh))))
-    assert marker.type == 'MESH_RESOURCE'
+    assert (marker.type, marker.mesh_resource) == ('MESH_RESOURCE', 'package://a/a.dae')
     assert 'instead of its part "lid"' in str(warning)
 
 
-@pytest.mark.parametrize('geometry', [
-    BOX, MESH.format('package://a/a.stl', ''), MESH.format('package://a/a.STL', '')])
-def test_what_has_no_material_is_gray(geometry):
-    red, green, blue, alpha = only_marker(visual(geometry)).rgba
-    assert 0 < red == green == blue < 1
-    assert alpha == 1
+TRANSPARENT = '<transparency>{}</transparency>'
 
 
-def test_mesh_keeps_its_own_materials():
-    assert only_marker(visual(MESH.format('package://a/a.dae', ''))).rgba is None
+@pytest.mark.parametrize(('geometry', 'extra', 'rgba'), [
+    (BOX, '', (0.7, 0.7, 0.7, 1.0)), (MESH.format('package://a/a.dae', ''), '', None),
+    (MESH.format('package://a/a.STL', ''), '', (0.7, 0.7, 0.7, 1.0)),
+    (BOX, TRANSPARENT.format(0.75), (0.7, 0.7, 0.7, 0.25)),
+    (MESH.format('package://a/a.dae', ''), TRANSPARENT.format(0.75), (0.7, 0.7, 0.7, 0.25))])
+def test_what_has_no_material_is_gray_unless_its_mesh_can_have_some(geometry, extra, rgba):
+    assert only_marker(visual(geometry, extra)).rgba == rgba
 
 
-@pytest.mark.parametrize('geometry', [BOX, MESH.format('package://a/a.dae', '')])
-def test_transparency_without_a_material_is_that_of_a_gray(geometry):
-    rgba = only_marker(visual(geometry, '<transparency>.75</transparency>')).rgba
-    assert rgba[3] == 0.25
-
-
-@pytest.mark.parametrize('extra', ['', material(1, 0, 0)])
-def test_transparent_visual_has_no_marker(extra):
-    content = visual(BOX, f'<transparency>1</transparency>{extra}')
-    assert markers_of(link_with(content)) == []
-
-
-def test_collision_has_no_marker():
-    content = f'<collision name="c"><geometry>{BOX}</geometry></collision>'
+@pytest.mark.parametrize('content', [
+    '<visual name="v"/>', f'<collision name="c"><geometry>{BOX}</geometry></collision>',
+    visual(BOX, TRANSPARENT.format(1)), visual(BOX, TRANSPARENT.format(1) + material(1, 0, 0))])
+def test_what_has_no_marker(content):
     assert markers_of(link_with(content)) == []
 
 
 def test_marker_is_in_the_frame_of_its_link():
     text = world_file(
         '<model name="a"><pose>1 0 0 0 0 0</pose><model name="b"><link name="l">'
-        f'<pose>0 5 0 0 0 0</pose>{visual(BOX, "<pose>0 0 2 0 0 0</pose>")}'
-        '</link></model></model>')
-    (marker,) = markers_of(text, frame_prefix='p/')
-    assert (marker.namespace, marker.frame_id) == ('a::b', 'p/a/b/l')
-    assert marker.pose == pytest.approx((0, 0, 2, 0, 0, 0, 1))
+        f'<pose>0 5 0 0 0 0</pose>{visual(CAPSULE, LYING)}</link></model></model>')
+    markers = markers_of(text, frame_prefix='p/')
+    assert [marker.pose[:3] for marker in markers] == [
+        pytest.approx(place) for place in ((0, 0, 2), (-2, 0, 2), (2, 0, 2))]
+    assert {(marker.namespace, marker.frame_id) for marker in markers} == {('a::b', 'p/a/b/l')}
 
 
 def test_marker_is_in_the_root_frame_if_links_have_none():
@@ -224,7 +190,7 @@ def test_only_the_chosen_model_of_the_first_world_is_shown():
 # From the text of a loaded scene
 
 
-WITH_SHAPE = model_file(f'<link name="l">{visual(BOX)}</link>')
+WITH_SHAPE = link_with(visual(MESH.format('model://arm/a.stl', '')))
 
 
 @pytest.fixture(name='reread')
@@ -232,11 +198,18 @@ def make_reread(tmp_path):
     """Loads a file, changes what it includes and makes markers; ``reread(text)``."""
     models = tmp_path / 'models'
     models.mkdir()
+    (models / 'arm').mkdir()
+    (models / 'arm/a.stl').touch()
     included = models / 'included.sdf'
     included.write_text(WITH_SHAPE, encoding='utf-8')
     path = tmp_path / 'cell.sdf'
-    path.write_text(world_file('<include><uri>included.sdf</uri></include>'), encoding='utf-8')
-    loaded = loaded_scene_from_request(LoadRequest(str(path), '', (models,)))
+    path.write_text(model_file(''.join(
+        f'<include><uri>{uri}</uri></include>' for uri in ('included.sdf', 'none.sdf'))),
+        encoding='utf-8')
+    loaded = loaded_scene_from_request(LoadRequest(
+        str(path), '', (models,), MissingInclude.SKIP,
+        TfOptions(model='r::m', frame_prefix='p/', frame_names=FrameNames.SCOPED),
+        model_name='r'))
     assert not loaded.scene.shapes
 
     def reread(text):
@@ -260,4 +233,5 @@ def test_shapes_with_an_include_that_has_changed_are_refused(reread, text):
 
 def test_shapes_are_those_of_the_text_that_was_read(reread):
     (marker,), warnings = reread(WITH_SHAPE)
-    assert (marker.type, marker.frame_id, warnings) == ('CUBE', 'm/l', ())
+    assert marker.mesh_resource.endswith('/models/arm/a.stl')
+    assert (marker.type, marker.frame_id, warnings) == ('MESH_RESOURCE', 'p/r/m/l', ())
