@@ -119,7 +119,8 @@ def test_plugins_in_one_model():
     ({'a': 'DiffDrive OdometryPublisher PosePublisher publish_model_pose'}, ['/{model}/pose']),
     ({'a': 'PosePublisher publish_nested_model_pose use_pose_vector_msg'}, ['/{model}/pose']),
     ({'a': 'PosePublisher publish_model_pose static_publisher'}, ['/{model}/pose_static']),
-    ({'a': 'AckermannSteering steering_only'}, []), ({'a': 'Thruster publish_model_pose'}, []),
+    ({'a': 'AckermannSteering steering_only'}, []),
+    ({'a': 'JointTrajectoryController publish_model_pose'}, []),
 ])
 def test_the_node_follows_the_best_source_of_each_model(contents, poses):
     def plugins(name, words):

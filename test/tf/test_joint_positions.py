@@ -179,8 +179,7 @@ def test_a_follower_stays_while_its_leader_has_no_position():
     (LINKS + joint(ENDS + MIMIC.format('k'), 'j', 'revolute') + following(), {'j': 2.0},
      {'k': 4.0}),
     (LEADER + '<link name="d"/><link name="e"/>' + following() + following('k', 'l', 'c', 'd')
-     + following('j', 'i', 'c', 'e'), {'j': 2.0}, {'k': 4.0, 'l': 8.0, 'i': 4.0}),
-], ids=['its leader', 'a given position', 'one another', 'a follower'])
+     + following('j', 'i', 'c', 'e'), {'j': 2.0}, {'k': 4.0, 'l': 8.0, 'i': 4.0})])
 def test_a_joint_follows(content, given, values):
     positions = positions_in_model(content)
     assert not any(values_of(positions).values())

@@ -341,9 +341,10 @@ def test_random_scenes_and_their_models_are_trees(
 def test_other_bodies_get_the_frame_ids_that_are_free():
     content = LINK + '<link name="k"/>' + joint(
         '<parent>l</parent><child>k</child><axis><xyz>1 0 0</xyz></axis>', 'j', 'prismatic')
-    tree = tree_of(
-        world_file(model('a', content)), use_joint_states=True, follows_models=True,
-        others=('a', '/b::c', '/', 'world', 'b/c', 'x y'))
+    text = world_file(model('a', content))
+    assert tree_of(text, follows_models=True).moving.motion.names == ('a',)
+    tree = tree_of(text, use_joint_states=True, follows_models=True,
+                   others=('a', '/b::c', '/', 'world', 'b/c', 'x y'))
     assert tree.frame_ids == ('a', 'a/l', 'a/k', 'b/c', 'x y')
     assert tree.parent_ids == ('a/l', 'world', 'a/l', 'world', 'world')
     assert tree.fixed_indices.tolist() == [0]
