@@ -7,7 +7,6 @@ from sdf_texts import link_with, model_file, world_file
 from tf_checks import model
 
 from sdf_pose_bridge import load_text
-from sdf_pose_bridge.errors import UnknownFrameError
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.limits import MissingInclude
@@ -74,12 +73,6 @@ def test_visual_of_many_instances_has_one_warning():
     _, (warning, _) = markers_and_warnings(world_file(''.join(models)))
     assert warning.message.startswith(
         'the visual "a::l::v" is not shown, like 2 more: the mesh "none.stl" is not found: ')
-
-
-def test_unknown_model_is_an_error():
-    scene = load_text(link_with(''), shapes=True)
-    with pytest.raises(UnknownFrameError):
-        visual_markers_from_scene(scene, tf_tree_from_scene(scene), 'n', resource_finder((), {}))
 
 
 def test_visual_whose_link_has_no_frame_has_a_warning():
@@ -204,7 +197,8 @@ def make_reread(tmp_path):
     included.write_text(WITH_SHAPE, encoding='utf-8')
     path = tmp_path / 'cell.sdf'
     path.write_text(model_file(''.join(
-        f'<include><uri>{uri}</uri></include>' for uri in ('included.sdf', 'none.sdf'))),
+        f'<include><uri>{uri}</uri><name>{name}</name></include>'
+        for uri, name in (('included.sdf', 'm'), ('included.sdf', 'n'), ('none.sdf', 'o')))),
         encoding='utf-8')
     loaded = loaded_scene_from_request(LoadRequest(
         str(path), '', (models,), MissingInclude.SKIP,
