@@ -99,7 +99,8 @@ def scene_from_graph(
         shapes=kept(elements.shapes),
         plugins=kept(elements.plugins),
         urdf_texts=kept({
-            model: details.urdf_texts for model, details in elements.models.items()}),
+            model: details.urdf_texts for model, details in elements.models.items()
+            if details.urdf_texts}),
         lines=elements.lines[is_kept],
         pose_lines=elements.pose_lines[is_kept],
         includes=kept(elements.includes),
