@@ -258,8 +258,6 @@ class _Builder:
             new = sorted(each for each in dependents[other] if each not in self._unresolved)
             self._unresolved.update(dict.fromkeys(new, self._unresolved[other]))
             found += new
-        if self._problems.errors:
-            return
         for uri in sorted(set(self._unresolved.values()) - {''}):
             indices = sorted(index for index, cause in self._unresolved.items() if cause == uri)
             names = [self._scopes.names[index] for index in indices]

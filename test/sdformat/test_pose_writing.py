@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from sdf_pose_bridge import Pose
 from sdf_pose_bridge.errors import PoseNotSetError
 from sdf_pose_bridge.geometry.poses import canonical_relative_pose
-from sdf_pose_bridge.geometry.rotations import canonical_quaternion
-from sdf_pose_bridge.sdformat.pose_writing import PoseText
+from sdf_pose_bridge.geometry.rotations import canonical_quaternion, quaternion_from_rpy
+from sdf_pose_bridge.sdformat.pose_writing import PoseText, shortest_decimal
 
 HALF = 0.5 ** 0.5
 NEW = Pose(1.5, -2.0, 0.25, 0.0, 0.0, HALF, HALF)
@@ -41,7 +41,8 @@ def changed(text):
     ('<pose>1.50 -2.0 2.5e-1 0.0 -0 0</pose>',
      '<pose>1.50 -2.0 2.5e-1 0.0 -0 1.570796327</pose>'),
     ('<pose>0, 0, 0, 0, 0, 0</pose>', '<pose>1.5 -2 0.25 0, 0, 1.570796327</pose>'),
-    ('<pose>9 9 9 0 0 7.853981633974483</pose>', '<pose>1.5 -2 0.25 0 0 7.853981633974483</pose>'),
+    ('<pose>9 9 9 6.283185307179586 0 7.853981633974483</pose>',
+     '<pose>1.5 -2 0.25 6.283185307179586 0 7.853981633974483</pose>'),
 ])
 def test_only_the_numbers_change(old, new):
     text = model_file('<!-- <pose> é --><link name="l">{}</link ><frame name="f"/>\n')
@@ -69,13 +70,15 @@ def test_encoding_stays(encoding):
     ('<link name="l">\r\n\r\n\t<!-- c -->\r\n</link>',
      '<link name="l">\r\n\t{}\r\n\r\n\t<!-- c -->\r\n</link>'),
     ('<link name="l">\n</link>', '<link name="l">\n  {}\n</link>'),
-    ('\n  <link name="l">\n  </link>', '\n  <link name="l">\n    {}\n  </link>'),
+    ('\n    <link name="l">\n    </link>', '\n    <link name="l">\n      {}\n    </link>'),
     ('\r\n\t<link name="l">\r\n\t</link>', '\r\n\t<link name="l">\r\n\t\t{}\r\n\t</link>'),
 ])
 def test_a_new_pose_is_indented_like_a_child(old, new):
-    change = PoseText(model_file(old).encode(), 'file.sdf').with_new_pose(2, NEW, 1e-9)
-    assert change.new_text.decode() == model_file(
-        new.format('<pose>1.5 -2 0.25 0 0 1.570796327</pose>'))
+    text, changed_text = (
+        model_file(each).replace('<model', '\n  <model')
+        for each in (old, new.format('<pose>1.5 -2 0.25 0 0 1.570796327</pose>')))
+    change = PoseText(text.encode(), 'file.sdf').with_new_pose(2, NEW, 1e-9)
+    assert change.new_text.decode() == changed_text
 
 
 @pytest.mark.parametrize(('text', 'reason'), [
@@ -95,17 +98,26 @@ def test_other_texts_are_refused(text, reason):
 def test_each_tag_has_a_line():
     text = PoseText(model_file('<link name="a"/><link name="b"\n/>').encode(), 'file.sdf')
     assert [text.element_at_line(line) for line in (1, 2, 3, 4)] == [0, 1, 2, 3]
-    with pytest.raises(PoseNotSetError):
-        text.element_at_line(5)
+    for line in (0, 5):
+        with pytest.raises(PoseNotSetError):
+            text.element_at_line(line)
     assert text.line(3) == 1
 
 
+@pytest.mark.parametrize(('number', 'tolerance', 'text'), [
+    (-1e-12, 1e-9, '0'), (0.25, 0.05, '0.2'), (2.5, 0.5, '2')])
+def test_shortest_decimal(number, tolerance, text):
+    assert shortest_decimal(number, tolerance) == text
+
+
 NUMBERS = st.floats(-1e6, 1e6)
+LAST_DIGIT = 0.1234567809, 0.2234567809, 0.3234567809
 
 
 @example(
     (899462.4420425005, 1.4364914845209569, 0.0),
     (-0.30711506386201737, -1.0, -0.30711506386201737, -0.5), '')
+@example(LAST_DIGIT, quaternion_from_rpy(LAST_DIGIT), '')
 @given(st.tuples(NUMBERS, NUMBERS, NUMBERS), st.tuples(*[st.floats(-1, 1)] * 4).filter(
     lambda quat_xyzw: max(map(abs, quat_xyzw)) > 1e-3), st.sampled_from([
         '', 'degrees="true"', 'rotation_format="quat_xyzw"']))

@@ -14,8 +14,8 @@ from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
 IDS = """<model name="arm">
 <pose>0 0 0 0 0 0</pose>
 <link name="base"><visual name="shape"/><collision name="shape"/><sensor name="eye"/></link>
-<link name="h"/>
-<link name="ö"/>
+<link name="h"><visual name="v"/></link>
+<link name="ö"/><frame name="ö"/>
 <link name="hand"/>
 <link name="hand_left"><visual name="palm"/></link>
 <frame name="grip"/>
@@ -60,8 +60,12 @@ def test_element_is_found(arm, element_id, tag, name):
     ('zzz', '', ''),
     ('tool::top', 'frame', '; did you mean "tool::tip"?'),
     ('grp', '', '; did you mean "grip"?'),
+    ('grp', 'link', ''),
     ('tool::tip', 'link', '; that is a <frame>'),
     ('h', 'link', '; libsdformat does not find names of one letter at the top of a model'),
+    ('h::v', 'visual', '; libsdformat does not find names of one letter at the top of a model'),
+    ('ö', 'frame',
+     '; libsdformat finds only the <link> of that name, which comes before it'),
     ('base::shape', 'collision',
      '; libsdformat finds only the <visual> of that name, which comes before it'),
 ])

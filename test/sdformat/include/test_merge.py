@@ -181,8 +181,11 @@ def test_placement_frame_of_the_file_places_the_merged_elements(scene_of, frame)
         + '<frame name="f" attached_to="upper"><pose>0 1 0 0 0 0</pose></frame>'
         + '<model name="n"><link name="k"><pose>0 0 1 0 0 0</pose></link></model>',
         f'placement_frame="{frame}"')
-    name = PROXY if frame == '__model__' else frame
-    assert_at(scene_of(in_model(include()), arm=text), f'm::{name}', (5, 0, 0))
+    name = f'm::{PROXY if frame == "__model__" else frame}'
+    scene = scene_of(in_model(include()), arm=text)
+    assert_at(scene, name, (5, 0, 0))
+    proxy = scene.index(f'm::{PROXY}')
+    assert scene.names[scene.placements.get(proxy, proxy)] == name
 
 
 def test_proxy_frame_can_be_referred_to(scene_of):
