@@ -89,15 +89,6 @@ def test_reference_in_a_world(reference, position):
     assert load_text(in_world(reference)).pose('probe')[:3] == position
 
 
-def test_reference_to_a_joint():
-    scene = load_text(model_file("""
-        <link name="a"/>
-        <link name="b"><pose>1 0 0 0 0 0</pose></link>
-        <joint name="j" type="fixed"><parent>a</parent><child>b</child></joint>
-        <frame name="f"><pose relative_to="j">1 0 0 0 0 0</pose></frame>"""))
-    assert scene.pose('m::f')[:3] == (2, 0, 0)
-
-
 def test_reference_names_a_frame_of_its_own_world():
     text = """
         <sdf version="1.10">

@@ -88,6 +88,7 @@ def test_elements_that_are_left_out_change_nothing_else(tmp_path):
         False, True, False]
     assert [*scene.world_names.values()] == ['w', 'v']
     assert scene.bodies[scene.index('m::c::v')] == -1
+    assert [*scene.placements] == [scene.index('m')]
     for name in [each.name for each in fields(scene) if each.name != 'warnings']:
         found, expected = getattr(scene, name), getattr(plain, name)
         is_array = isinstance(found, np.ndarray)

@@ -352,7 +352,6 @@ class _Conversion:
 
     def _add_extensions(self, xml: XmlElement, reference: str) -> None:
         for child in self._extensions.pop(reference, ()):
-            child.tail = None
             xml.append(child)
 
     def _move_extension(self, xml: XmlElement, link: RobotLink) -> None:

@@ -134,7 +134,7 @@ def robot_from_tree(root: XmlElement, sources: Sources, *, is_included: bool) ->
     errors.problems.raise_errors()
     parent_joints: dict[str, RobotJoint] = {}
     children: dict[str, list[str]] = {}
-    for joint in sorted(filter(None, joints), key=lambda joint: joint.name.encode()):
+    for joint in sorted(joints, key=lambda joint: joint.name.encode()):
         if joint.child in parent_joints:
             other = parent_joints[joint.child].name
             errors.error(
@@ -248,7 +248,7 @@ def _link(name: str, xml: XmlElement, sources: Sources) -> RobotLink:
 
 def _joint(
     name: str, xml: XmlElement, links: Mapping[str, RobotLink], sources: Sources, errors: Sources,
-) -> RobotJoint | None:
+) -> RobotJoint:
     ends = []
     for tag in ('parent', 'child'):
         end = first_child(xml, tag)
@@ -276,7 +276,7 @@ def _joint(
             values[tag] = numbers_of_attributes(part, definition.attributes.values())
         except ValueError as error:
             errors.error(ParsingError, part, str(error))
-            return None
+            continue
         if tag == 'dynamics' and not values[tag]:
             errors.error(ParsingError, part, 'the <dynamics> has neither damping nor friction')
     origin = _pose_of_origin(first_child(xml, 'origin'), values.get('origin', {}), sources)

@@ -125,8 +125,10 @@ def test_error_in_an_included_file_has_that_file(errors_in, tmp_path, text, code
     (include('none.sdf') + '<frame name="f" attached_to="name_in_the_file::l"/>', ['URI_LOOKUP']),
     (include('none.sdf', '<name>n</name>') + '<frame name="f" attached_to="n::l"/>',
      ['URI_LOOKUP']),
-    (include('none.sdf', '<name>n</name>') + '<frame name="f" attached_to="m::l"/>',
-     ['URI_LOOKUP', 'FRAME_ATTACHED_TO_INVALID']),
+    ('<model name="k">' + LINK + include('none.sdf', '<name>n</name>')
+     + '</model><frame name="f" attached_to="k::n::l"/>', ['URI_LOOKUP']),
+    *((include('none.sdf', '<name>n</name>') + f'<frame name="f" attached_to="{name}"/>',
+       ['URI_LOOKUP', 'FRAME_ATTACHED_TO_INVALID']) for name in ('m::l', 'm::n::l')),
     (include('model://none') + '<frame name="f"><pose relative_to="none"/></frame>',
      ['URI_LOOKUP']),
     (include('none.sdf', '<name>n</name>') + posed('light', 'i', '', 'n'), ['URI_LOOKUP']),
@@ -244,14 +246,14 @@ def test_wrong_include_in_a_link_or_a_joint_is_refused(errors_in, place, content
 
 def test_missing_include_is_skipped_with_what_refers_to_it(write):
     scene = load(
-        write(include('model://nothing', '<name>robot</name>')
+        write(include('model://nothing', '<name>robot</name>') + include('model://other')
               + '<frame name="f" attached_to="robot::l"/><frame name="g" attached_to="f"/>'
               + '<model name="k"><link name="l"/></model>'),
         on_missing_include='skip')
     assert scene.names == ('world', 'k', 'k::l')
-    assert [warning.code for warning in scene.warnings] == ['WARNING', 'WARNING']
-    assert 'elements that refer to it are left out too: "f", "g"' in (
-        scene.warnings[1].message)
+    assert [warning.code for warning in scene.warnings] == ['WARNING'] * 3
+    assert scene.warnings[-1].message == (
+        '"model://nothing" is missing, so elements that refer to it are left out too: "f", "g"')
 
 
 @pytest.mark.parametrize(('parent', 'axis'), [
@@ -303,13 +305,9 @@ def test_model_of_missing_includes_alone_is_read(write):
 # What is included
 
 def test_included_elements_stand_in_the_place_of_the_include(scene_of):
-    scene = scene_of('<frame name="f"/>' + include() + '<frame name="g"/>')
-    assert names_of(scene) == ['f', 'leaf', 'leaf::body', 'g']
-
-
-def test_included_model_of_a_model_is_nested(scene_of):
-    scene = scene_of('<model name="m">' + include() + '</model>')
-    assert names_of(scene) == ['m', 'm::leaf', 'm::leaf::body']
+    scene = scene_of('<frame name="f"/><model name="m">' + include() + '</model>' + include())
+    assert names_of(scene) == [
+        'f', 'm', 'm::leaf', 'm::leaf::body', 'leaf', 'leaf::body']
 
 
 @pytest.mark.parametrize('tag', ['light', 'actor'])

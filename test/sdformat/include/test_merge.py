@@ -258,9 +258,12 @@ def test_pose_that_is_added_to_a_merged_link_without_one_has_no_effect(scene_of)
 
 
 def test_doubtful_pose_of_a_merge_is_warned_of_once(scene_of):
-    scene = scene_of(in_model(include('<pose>0 0 0 0 0 90</pose>')))
-    assert [('radians' in warning.message, warning.place.line) for warning in scene.warnings] == [
-        (True, 2)]
+    visual = posed('visual', 'v', '', 'zzz')
+    scene = scene_of(
+        in_model(include('<pose>0 0 0 0 0 90</pose>')),
+        arm=arm(f'\n<link name="l">{visual}</link>'))
+    assert [(warning.code, warning.place.line) for warning in scene.warnings] == [
+        ('WARNING', 2), ('POSE_RELATIVE_TO_INVALID', 3)]
 
 
 def test_placement_frame_in_a_cycle_is_reported_as_the_cycle_alone(tmp_path):

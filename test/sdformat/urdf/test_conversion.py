@@ -9,7 +9,7 @@ Where that differs from what ROS makes of a robot there are tests of both.
 import math
 
 import pytest
-from sdf_texts import errors_of_file, names_of, only_error, posed, world_file
+from sdf_texts import codes_of, errors_of_file, names_of, only_error, posed, world_file
 from urdf_texts import gazebo, joint, link, origin, robot, shape
 
 from sdf_pose_bridge import load, load_text
@@ -72,10 +72,10 @@ def kinds_of(scene):
 # Links and joints
 
 def test_frame_of_a_link_is_that_of_its_joint():
-    scene = for_ros(joined(origin('1 2 3')))
+    scene = for_ros(joined(origin('0.30000000000000004 2 3')))
     assert names_of(scene) == ['r', 'r::a', 'r::a::inertial', 'r::j', 'r::b', 'r::b::inertial']
     assert scene.pose('r::b') == scene.pose('r::j')
-    assert scene.pose('r::b')[:3] == (1.0, 2.0, 3.0)
+    assert scene.pose('r::b')[:3] == (0.30000000000000004, 2.0, 3.0)
 
 
 def test_children_are_in_the_order_of_their_joints():
@@ -174,6 +174,7 @@ def test_link_world_is_the_world():
     assert len(scene.joints) == 1
     assert scene.urdf_root == 'world'
     assert names_of(for_ros('<link name="world"/>')) == ['r']
+    assert 'RESERVED_NAME' in codes_of(robot(link('a') + link('world') + joint('j', 'a', 'world')))
 
 
 def test_link_fixed_to_the_world_stays_a_link_in_an_include(included):
@@ -207,6 +208,7 @@ def test_link_without_mass_at_a_fixed_joint_is_a_frame_in_an_include(included):
 def test_link_without_mass_stays_for_ros_with_a_warning(massless):
     scene = for_ros(MASSLESS.replace('<link name="c"/>', massless))
     assert scene.pose('r::d')[:3] == (1.0, 1.0, 0.0)
+    assert 'r::c::inertial' not in scene.names
     (warning,) = scene.warnings
     assert (warning.code, warning.place.element) == (
         'LINK_INERTIA_INVALID', '/robot[@name="r"]/link[@name="c"]')
@@ -243,12 +245,13 @@ def test_fixed_joint_leaves_two_frames_in_an_include(included):
 def test_fixed_joint_stays_for_ros_with_all_that_its_link_has():
     text = SENSOR.format('<pose degrees="true">0.123456789 0 0 0 0 90</pose>')
     scene = for_ros(
-        link('a', mass=1.0) + link('b', shape('visual'), mass=3.0, center='1 0 0') + FIXED
+        link('a', mass=1.0)
+        + link('b', shape('visual') + shape('collision'), mass=3.0, center='1 0 0') + FIXED
         + gazebo(text, 'b'))
     assert [each.type for each in scene.joints] == ['fixed']
     assert names_of(scene) == [
-        'r', 'r::a', 'r::a::inertial', 'r::j', 'r::b', 'r::b::inertial', 'r::b::b_visual',
-        'r::b::s']
+        'r', 'r::a', 'r::a::inertial', 'r::j', 'r::b', 'r::b::inertial',
+        'r::b::b_collision', 'r::b::b_visual', 'r::b::s']
     assert scene.pose('r::a::inertial')[:3] == (0.0, 0.0, 0.0)
     assert scene.pose('r::b::inertial', 'r::b')[:3] == (1.0, 0.0, 0.0)
     assert scene.pose('r::b::s', 'r::b').x == pytest.approx(0.123456789, abs=1e-15)
@@ -300,29 +303,22 @@ def test_mesh_of_a_package_stays_one(is_included):
 
 
 def test_poses_of_two_fixed_joints_in_a_row_are_multiplied_from_the_first(included):
-    text = (TWO + link('c', shape('visual')) + FIXED
-            + joint('k', 'b', 'c', 'fixed', origin('0 2 0', '0.5 0 0'))
+    text = (TWO + link('c', shape('visual'), mass=3.0, center='1 0 0') + FIXED
+            + joint('k', 'b', 'c', 'fixed', origin('0 1.0000004 0', '0.5 0 0'))
             + link('d') + joint('l', 'c', 'd', 'continuous', origin('0 0 3'))
-            + gazebo(SENSOR.format(''), 'c'))
+            + gazebo(SENSOR.format('') + posed('particle_emitter', 'p', '0 0 5 0 0 0'), 'c'))
     in_include, in_ros = included(text), for_ros(text)
-    expected = (-1.0, 0.0, 0.0, *quaternion_from_rpy((0.5, 0.0, math.pi / 2)))
-    for name in ('a::a_fixed_joint_lump__c_visual', 'c'):
-        assert in_include.pose(f'n::{name}', 'n') == pytest.approx(expected), name
-    assert in_include.pose('n::a::s', 'n') == pytest.approx(expected, abs=1e-5)
-    assert in_include.pose('n::a::inertial', 'n')[:3] == pytest.approx((0.0, 0.0, 0.0))
-    assert in_ros.pose('r::c', 'r') == pytest.approx(expected)
+    expected = pytest.approx(
+        (0.0, 0.0, 0.0, *quaternion_from_rpy((0.5, 0.0, math.pi / 2))), abs=1e-5)
+    for name in ('a::a_fixed_joint_lump__c_visual', 'c', 'a::s'):
+        assert in_include.pose(f'n::{name}', 'n') == expected, name
+    assert in_include.pose('n::a::s', 'n').x == pytest.approx(0.0, abs=1e-9), 'six digits'
+    assert in_include.pose('n::a::p', 'n')[:3] == (0.0, 0.0, 5.0), 'not moved'
+    assert in_include.pose('n::a::inertial', 'n') == pytest.approx(
+        (0.2, 0.6, 0.0, 0.0, 0.0, 0.0, 1.0), abs=1e-5)
+    assert in_include.names[in_include.joints[0].parent] == 'n::a'
+    assert in_ros.pose('r::c', 'r') == expected
     assert in_include.pose('n::d', 'n') == pytest.approx(in_ros.pose('r::d', 'r'))
-
-
-def test_joint_below_a_lumped_link_starts_at_the_link_it_is_lumped_into():
-    text = robot(TWO + link('c') + FIXED + joint('k', 'b', 'c', 'continuous', origin('1 0 0')))
-    assert model_from(text).find('joint/parent').text == 'a'
-    assert load_text(text).pose('r::c')[:3] == pytest.approx((1.0, 1.0, 0.0))
-
-
-def test_masses_are_added(included):
-    scene = included(link('a', mass=1.0) + link('b', mass=3.0, center='1 0 0') + FIXED)
-    assert scene.pose('n::a::inertial', 'n')[:3] == pytest.approx((0.75, 0.75, 0.0))
 
 
 def test_link_without_mass_gets_that_of_a_lumped_link(included):
@@ -400,6 +396,8 @@ def test_all_of_gazebo_elements_is_left_out_where_that_is_not_enough():
 def test_all_of_gazebo_elements_is_left_out_where_one_was_needed_by_another():
     frames = '<frame name="f"><pose>1</pose></frame>\n' + posed('frame', 'g', '', 'f')
     scene = for_ros(TWO_FIXED + gazebo(frames) + '\n' + gazebo(SENSOR.format(''), 'a'))
+    assert [warning.code for warning in scene.warnings] == [
+        'ELEMENT_INVALID', 'POSE_RELATIVE_TO_INVALID']
     assert scene.warnings[-1].message.endswith('so all of <gazebo> elements is left out')
     assert not [name for name in scene.names if name.endswith(('::f', '::g', '::s'))]
 

@@ -68,9 +68,10 @@ def test_error_names_line_and_element():
 
 
 def test_all_errors_are_reported():
-    errors = errors_of(
-        robot(TWO + '\n' + joint('j', 'a', 'c') + '\n' + joint('k', 'd', 'b')))
-    assert [error.line for error in errors] == [2, 3]
+    wrong = '<axis xyz="1 0"/><dynamics damping="x"/>'
+    errors = errors_of(robot(
+        TWO + '\n' + joint('j', 'a', 'c') + '\n' + joint('k', 'd', 'b', 'continuous', wrong)))
+    assert [error.line for error in errors] == [2, 3, 3, 3]
 
 
 def test_number_of_errors_is_bounded():
@@ -87,11 +88,14 @@ def test_number_of_errors_is_bounded():
     '<visual><origin rpy="0"/><geometry><sphere radius="1"/></geometry></visual>',
     '<visual><geometry><box size="nan 1 1"/></geometry></visual>',
     '<visual><geometry><sphere radius="1"/></geometry><material/></visual>',
+    '<collision/>',
 ])
 def test_link_is_read_up_to_a_fault(broken):
     sphere = '<visual><geometry><sphere radius="1"/></geometry></visual>'
     scene = load_text(robot(link('a', sphere + broken + sphere)))
-    assert [name for name in scene.names if 'visual' in name] == ['r::a::a_visual']
+    is_first = 'visual' in broken  # visuals are read before collisions
+    assert [name for name in scene.names if 'visual' in name] == [
+        'r::a::a_visual', 'r::a::a_visual_1'][:1 if is_first else 2]
     assert 'ROS and Gazebo read it no further' in scene.warnings[0].message
 
 
@@ -115,16 +119,18 @@ def test_center_of_mass_counts_though_the_mass_is_missing(tmp_path):
     robot(TWO + joint('j', 'a', 'b', content=origin(rpy='0 0 90'))),
     robot(link('a', shape('visual', origin(rpy='0 0 90')))),
     robot('<link name="a"><inertial><origin rpy="0 0 90"/></inertial></link>'),
-    robot(origin(rpy='0 0 90') + link('a')),
+    robot(origin(rpy='0 0 -90') + link('a')),
 ])
 def test_angles_that_look_like_degrees_have_a_warning(text):
     messages = [warning.message for warning in load_text(text).warnings]
-    assert ('the angles rpy="0 0 90" of <origin> are radians; they look like degrees'
+    sign = '-' if '-90' in text else ''
+    assert (f'the angles rpy="0 0 {sign}90" of <origin> are radians; they look like degrees'
             in messages)
 
 
 def test_a_turn_in_radians_has_no_warning():
-    text = robot(TWO + joint('j', 'a', 'b', content=origin(rpy='6.3 0 -6.3')))
+    text = robot(TWO + joint(
+        'j', 'a', 'b', content=origin(rpy='6.3 0 -6.3') + '<axis xyz="no axis"/>'))
     assert load_text(text).warnings == ()
 
 
@@ -144,10 +150,11 @@ def test_joint_gets_another_name_than_its_link_and_its_link_keeps_it(joint_type)
     assert 'has the name of link "b"; it is called "b_joint" here' in warning.message
 
 
-def test_new_name_is_not_that_of_another_joint():
+def test_new_name_is_not_that_of_another_joint_or_link():
     scene = load_text(robot(
-        TWO + link('c') + joint('b', 'a', 'b', 'continuous') + joint('b_joint', 'b', 'c')))
-    assert {'r::b_joint', 'r::b_joint1'} <= set(scene.names)
+        TWO + link('b_joint1') + joint('b', 'a', 'b', 'continuous')
+        + joint('b_joint', 'b', 'b_joint1')))
+    assert {'r::b_joint', 'r::b_joint1', 'r::b_joint2'} <= set(scene.names)
 
 
 @pytest.mark.parametrize('name', ['b', 'b_joint'])
@@ -165,5 +172,6 @@ def test_mimic_follows_a_joint_that_is_renamed():
 
 
 def test_robot_may_have_the_name_of_its_link():
-    scene = load_text(robot(link('r')))
-    assert tf_tree_from_scene(scene).frame_ids == ('r',)
+    scene = load_text(robot(link('a') + link('r') + joint('j', 'a', 'r', content=origin('1 0 0'))))
+    assert tf_tree_from_scene(scene).frame_ids == ('a', 'r')
+    assert scene.pose('r').x == 1.0
