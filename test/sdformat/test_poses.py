@@ -60,16 +60,13 @@ def test_word_that_is_not_a_number_is_refused(word):
     assert f'"{word}"' in str(caught.value)
 
 
-@pytest.mark.parametrize('count', [1, 2, 3, 4, 5, 7, 8, 12])
-def test_other_count_than_six_is_refused(count):
-    with pytest.raises(PoseTextError, match=f'6 values .x y z roll pitch yaw.*has {count}'):
-        rpy(' '.join(['1'] * count))
-
-
-@pytest.mark.parametrize('count', [1, 3, 4, 6, 8, 14])
-def test_other_count_than_seven_is_refused_with_a_quaternion(count):
-    with pytest.raises(PoseTextError, match=f'7 values .x y z qx qy qz qw.*has {count}'):
-        quaternion(' '.join(['1'] * count))
+@pytest.mark.parametrize(('pose_format', 'rule', 'counts'), [
+    (RPY, '6 values .x y z roll pitch yaw', (1, 2, 3, 4, 5, 7, 8, 12)),
+    (QUATERNION, '7 values .x y z qx qy qz qw', (1, 3, 4, 6, 8, 14))])
+def test_other_count_than_that_of_the_format_is_refused(pose_format, rule, counts):
+    for count in counts:
+        with pytest.raises(PoseTextError, match=f'{rule}.*has {count}'):
+            pose_from_text(' '.join(['1'] * count), pose_format)
 
 
 @pytest.mark.parametrize(('word', 'number'), [
@@ -107,21 +104,19 @@ def test_long_text_is_cut_in_the_message(text):
     assert len(str(caught.value)) < 250
 
 
-@pytest.mark.parametrize('text', ['0 0 0 0 0 0 0', '1 2 3 1e-10 0 0 0', '0 0 0 0 -0 0 +0'])
-def test_zero_quaternion_is_refused(text):
-    with pytest.raises(PoseTextError, match='zero'):
-        quaternion(text)
-
-
-def test_quaternion_beyond_the_range_of_a_double_is_refused():
-    with pytest.raises(PoseTextError, match='range of a double'):
-        quaternion('0 0 0 1.7e308 1.7e308 1.7e308 1.7e308')
-
-
-@pytest.mark.parametrize('separator', ['\u00a0', '\u2003', '\u3000', '\u0085', ','])
-def test_only_ascii_white_space_separates_numbers(separator):
-    with pytest.raises(PoseTextError, match='has 1'):
-        rpy(separator.join('123000'))
+@pytest.mark.parametrize(('text', 'pose_format', 'message'), [
+    *((text, QUATERNION, 'zero') for text in (
+        '0 0 0 0 0 0 0', '1 2 3 1e-10 0 0 0', '0 0 0 0 -0 0 +0')),
+    ('0 0 0 1.7e308 1.7e308 1.7e308 1.7e308', QUATERNION, 'range of a double'),
+    *((f'{tiny} 0 0 0 0 0', RPY, 'range of a double') for tiny in (
+        '1e-400', '1E-0400', '0.' + 400 * '0' + '1')),
+    ('1 2 3 0 0 0 1', RPY, 'did you mean rotation_format="quat_xyzw"'),
+    # Only ASCII white space separates numbers.
+    *((separator.join('123000'), RPY, 'has 1') for separator in '\u00a0\u2003\u3000\u0085,'),
+])
+def test_wrong_numbers_are_refused_with_the_rule(text, pose_format, message):
+    with pytest.raises(PoseTextError, match=message):
+        pose_from_text(text, pose_format)
 
 
 @pytest.mark.parametrize(('word', 'value'), [
@@ -169,14 +164,3 @@ def test_pose_that_is_read_has_the_numbers_of_its_words(text, pose_format):
     words = text.split() or '0 0 0 0 0 0 1'.split()[:len(numbers)]
     assert doubt or list(numbers) == [*map(float, words)] or (
         pose_format.is_quaternion and math.hypot(*numbers[3:]) == pytest.approx(1.0))
-
-
-@pytest.mark.parametrize('tiny', ['1e-400', '1E-0400', '0.' + 400 * '0' + '1'])
-def test_number_that_is_too_small_is_refused(tiny):
-    with pytest.raises(PoseTextError, match='range of a double'):
-        rpy(f'{tiny} 0 0 0 0 0')
-
-
-def test_seven_numbers_are_probably_a_quaternion():
-    with pytest.raises(PoseTextError, match='did you mean rotation_format="quat_xyzw"'):
-        pose_from_text('1 2 3 0 0 0 1', PoseFormat())

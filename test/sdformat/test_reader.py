@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reading elements: the top of a file, poses, scoped names, depth, what only some kinds have."""
 
+import math
+
 import pytest
 from sdf_texts import (
     assert_at,
@@ -34,17 +36,16 @@ WAYPOINT = ('<actor name="a"><script><trajectory id="0" type="walk"><waypoint><t
 
 # The top of a file
 
-def test_two_models_at_the_top_are_refused():
-    error = only_error(
-        '<sdf version="1.9"><model name="a"><link name="l"/></model>'
-        '<model name="b"><link name="l"/></model></sdf>')
-    assert error.code == 'ELEMENT_INCORRECT_TYPE'
-    assert '"b"' in error.message
-
-
-def test_two_models_of_one_name_at_the_top_are_refused():
-    model = '<model name="a"><link name="l"/></model>'
-    assert codes_of(f'<sdf version="1.9">{model}{model}</sdf>') == ['DUPLICATE_NAME']
+@pytest.mark.parametrize(('second', 'code'), [
+    ('<model name="k"><link name="l"/></model>', 'ELEMENT_INCORRECT_TYPE'),
+    ('<light name="k" type="point"/>', 'ELEMENT_INCORRECT_TYPE'),
+    ('<actor name="k"/>', 'ELEMENT_INCORRECT_TYPE'),
+    ('<model name="m"><link name="l"/></model>', 'DUPLICATE_NAME'),
+])
+def test_second_element_at_the_top_is_refused_by_its_name(second, code):
+    error = only_error(model_file(LINK).replace('</sdf>', second + '</sdf>'))
+    assert error.code == code
+    assert ('"m"' if code == 'DUPLICATE_NAME' else '"k"') in error.message
 
 
 def test_second_pose_is_ignored_with_a_warning():
@@ -53,12 +54,6 @@ def test_second_pose_is_ignored_with_a_warning():
     assert scene.pose('m::l').x == 1.0
     assert [warning.message for warning in scene.warnings] == [
         'a second <pose> is ignored; the first one counts']
-
-
-@pytest.mark.parametrize('second', ['<light name="k" type="point"/>', '<actor name="k"/>'])
-def test_model_and_something_else_at_the_top_are_refused(second):
-    assert codes_of(model_file(LINK).replace('</sdf>', second + '</sdf>')) == [
-        'ELEMENT_INCORRECT_TYPE']
 
 
 @pytest.mark.parametrize('tag', ['light', 'actor'])
@@ -228,20 +223,16 @@ def test_poses_that_are_no_frames_move_nothing(text):
     assert not load_text(text).poses[:, :3].any()
 
 
-@pytest.mark.parametrize('attribute', [
-    'degrees=""', 'degrees=" "', 'degrees="false"', 'degrees="0"', 'degrees=" FALSE "',
-    'rotation_format=""', 'rotation_format=" "', 'rotation_format=" euler_rpy "',
-    'relative_to=""', 'relative_to=" "', 'frame="x"', 'unknown="x"',
+@pytest.mark.parametrize(('attributes', 'yaw_rad'), [
+    *((each, 1.0) for each in (
+        'degrees=""', 'degrees=" "', 'degrees="false"', 'degrees="0"', 'degrees=" FALSE "',
+        'rotation_format=""', 'rotation_format=" "', 'rotation_format=" euler_rpy "',
+        'relative_to=""', 'relative_to=" "', 'frame="x"', 'unknown="x"')),
+    *((f'degrees="{each}"', math.pi / 180.0) for each in ('true', '1', ' True ', 'TRUE')),
 ])
-def test_attribute_that_changes_nothing(attribute):
-    scene = load_text(link_with(f'<pose {attribute}>1 0 0 0 0 1</pose>'))
-    assert_at(scene, 'm::l', (1, 0, 0, 0, 0, 0.479425538604203, 0.8775825618903728))
-
-
-@pytest.mark.parametrize('value', ['true', '1', ' True ', 'TRUE'])
-def test_angles_in_degrees(value):
-    scene = load_text(link_with(f'<pose degrees="{value}">1 0 0 180 0 0</pose>'))
-    assert_at(scene, 'm::l', (1, 0, 0, 1, 0, 0, 0))
+def test_angles_are_radians_unless_degrees_are_true(attributes, yaw_rad):
+    scene = load_text(link_with(f'<pose {attributes}>1 0 0 0 0 1</pose>'))
+    assert_at(scene, 'm::l', (1, 0, 0, 0, 0, math.sin(yaw_rad / 2.0), math.cos(yaw_rad / 2.0)))
 
 
 # References that have no effect
@@ -367,23 +358,19 @@ def test_sensor_has_a_frame_id(content, frame_id):
     assert sensor_with(content).frame_id == frame_id
 
 
-@pytest.mark.parametrize(('content', 'is_camera', 'optical_frame_id'), [
-    ('', False, ''),
-    ('<optical_frame_id>eye</optical_frame_id>', False, ''),
-    ('<camera/>', True, ''),
-    ('<camera><optical_frame_id>eye</optical_frame_id></camera>', True, 'eye'),
-])
-def test_sensor_with_a_camera(content, is_camera, optical_frame_id):
-    details = sensor_with(content)
-    assert (details.is_camera, details.optical_frame_id) == (is_camera, optical_frame_id)
-
-
-@pytest.mark.parametrize(('sensor_type', 'is_camera'), [
-    ('gpu_lidar', False), *((each, True) for each in (
+@pytest.mark.parametrize(('sensor_type', 'content', 'is_camera', 'optical_frame_id'), [
+    ('custom', '', False, ''),
+    ('custom', '<optical_frame_id>eye</optical_frame_id>', False, ''),
+    ('custom', '<camera/>', True, ''),
+    ('custom', '<camera><optical_frame_id>eye</optical_frame_id></camera>', True, 'eye'),
+    ('gpu_lidar', '', False, ''), *((each, '', True, '') for each in (
         'camera depth_camera rgbd_camera thermal_camera segmentation_camera boundingbox_camera '
-        'wide_angle_camera wideanglecamera multicamera thermal').split())])
-def test_sensor_of_the_type_of_a_camera(sensor_type, is_camera):
-    assert sensor_with('', sensor_type).is_camera == is_camera
+        'wide_angle_camera wideanglecamera multicamera thermal').split()),
+])
+def test_sensor_is_a_camera_by_its_type_or_content(
+        sensor_type, content, is_camera, optical_frame_id):
+    details = sensor_with(content, sensor_type)
+    assert (details.is_camera, details.optical_frame_id) == (is_camera, optical_frame_id)
 
 
 # What is URDF

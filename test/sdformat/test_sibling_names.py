@@ -148,17 +148,15 @@ def test_children_of_a_link_of_different_kinds_may_share_a_name():
     assert names_of(scene).count('m::l::x') == len(LINK_CHILDREN)
 
 
-def test_light_and_actor_may_share_the_name_of_a_model():
-    scene = load_text(world_file(
-        '<model name="x"><link name="l"/></model><light name="x" type="point"/>'
-        '<actor name="x"/>'))
-    assert names_of(scene) == ['x', 'x::l', 'x', 'x']
-
-
-def test_elements_of_different_scopes_may_share_a_name():
-    scene = load_text(model_file(
-        '<link name="x"><visual name="x"/></link><model name="n"><link name="x"/></model>'))
-    assert names_of(scene) == ['m', 'm::x', 'm::x::x', 'm::n', 'm::n::x']
+@pytest.mark.parametrize(('text', 'names'), [
+    (world_file('<model name="x"><link name="l"/></model><light name="x" type="point"/>'
+                '<actor name="x"/>'), ['x', 'x::l', 'x', 'x']),
+    (model_file('<link name="x"><visual name="x"/></link>'
+                '<model name="n"><link name="x"/></model>'),
+     ['m', 'm::x', 'm::x::x', 'm::n', 'm::n::x']),
+], ids=['a light and an actor', 'other scopes'])
+def test_elements_that_may_share_a_name(text, names):
+    assert names_of(load_text(text)) == names
 
 
 # Elements of different kinds with one name in files below 1.7

@@ -181,27 +181,8 @@ def test_every_kind_in_a_model_moves_into_the_nested_model(kind):
     assert scene.pose('m::n::x', relative_to='m::n')[5] != 0.0
 
 
-def test_pose_of_a_nested_link_can_be_relative_to_a_name_in_the_new_model():
-    scene = load_text(world(
-        '<link name="n::l"><pose relative_to="k">1 0 0 0 0 0</pose></link>'
-        '<link name="n::k"><pose>0 5 0 0 0 0</pose></link>'))
-    assert scene.pose('m::n::l')[:3] == (1.0, 5.0, 0.0)
-
-
-def test_attachment_of_a_nested_frame_is_to_the_name_in_the_new_model():
-    scene = load_text(world(
-        '<link name="n::l"><pose>5 0 0 0 0 0</pose></link>'
-        '<frame name="n::f" attached_to="n::l"/>'))
-    assert scene.pose('m::n::f').x == 5.0
-
-
 def test_names_with_the_separator_are_refused_in_newer_files():
     assert set(codes_of(world(NESTED, '1.8'))) == {'RESERVED_NAME'}
-
-
-def test_pose_of_a_nested_model_is_that_of_its_model_frame():
-    scene = load_text(world('<link name="base"/>' + NESTED))
-    assert scene.pose('m::n::a')[:3] == (1.0, 0.0, 1.0)
 
 
 def test_canonical_link_of_a_nested_model_is_that_of_its_model_frame():
@@ -211,6 +192,12 @@ def test_canonical_link_of_a_nested_model_is_that_of_its_model_frame():
 
 @pytest.mark.parametrize(('content', 'name', 'position'), [
     ('<link name="b::l"/>', 'm::b::l', (0, 0, 0)),
+    # References to the frame of the model, and to names in the new model.
+    (NESTED, 'm::n::a', (1, 0, 1)),
+    (('<link name="n::l"><pose relative_to="k">1 0 0 0 0 0</pose></link>'
+      '<link name="n::k"><pose>0 5 0 0 0 0</pose></link>'), 'm::n::l', (1, 5, 0)),
+    ('<link name="n::l"><pose>5 0 0 0 0 0</pose></link><frame name="n::f" attached_to="n::l"/>',
+     'm::n::f', (5, 0, 0)),
     ('<link name="a::b::c"/>', 'm::a::b::c', (0, 0, 0)),
     (('<model name="n::k"><frame name="f"><pose>0 3 0 0 0 0</pose></frame>'
       '<link name="l"><pose relative_to="f">1 0 0 0 0 0</pose></link></model>'),

@@ -49,33 +49,16 @@ def test_unreadable_file_is_refused(tmp_path, path):
     assert (caught.value.code, caught.value.file) == ('FILE_READ', str(tmp_path / path))
 
 
-def test_misspelt_file_has_the_nearest_name_in_its_folder(tmp_path):
+@pytest.mark.parametrize(('path', 'reason'), [
+    ('cel.sdf', r'; did you mean "cell\.sdf"\?$'), ('a.dae', '"git lfs pull" fetches its content'),
+    ('pipe', 'not a regular file'), ('/dev/null', 'not a regular file'), ('/', '.'),
+    ('/dev/zero', 'robot_description')])
+def test_only_regular_files_with_content_are_read(tmp_path, path, reason):
     (tmp_path / 'cell.sdf').touch()
-    with pytest.raises(FileReadError, match=r'; did you mean "cell\.sdf"\?$'):
-        bytes_from_file(str(tmp_path / 'cel.sdf'), Usage())
-
-
-@pytest.mark.parametrize('path', ['/dev/zero', '/dev/null', '/'])
-def test_only_regular_files_are_read(path):
-    with pytest.raises(FileReadError):
-        bytes_from_file(path, Usage())
-
-
-def test_pointer_of_git_lfs_is_named(tmp_path):
     (tmp_path / 'a.dae').write_text('version https://git-lfs.github.com/spec/v1\noid sha256:0\n')
-    with pytest.raises(FileReadError, match='"git lfs pull" fetches its content'):
-        bytes_from_file(str(tmp_path / 'a.dae'), Usage())
-
-
-def test_named_pipe_is_refused_at_once(tmp_path):
     os.mkfifo(tmp_path / 'pipe')
-    with pytest.raises(FileReadError, match='not a regular file'):
-        bytes_from_file(str(tmp_path / 'pipe'), Usage())
-
-
-def test_who_reads_from_a_command_is_told_of_the_text_as_a_parameter():
-    with pytest.raises(FileReadError, match='robot_description'):
-        bytes_from_file('/dev/zero', Usage())
+    with pytest.raises(FileReadError, match=reason):
+        bytes_from_file(str(tmp_path / path), Usage())
 
 
 @pytest.mark.parametrize('size', [0, 1, 100_000])
@@ -119,22 +102,19 @@ def test_text_that_is_not_well_formed_is_refused(content):
     assert error_of(content).code == 'FILE_READ'
 
 
-@pytest.mark.parametrize('content', [
-    b'{\n  "sdf": 1\n}\n', b'solid part\n facet normal 0 0 1\nendsolid part\n', b'\0\n\1\n'])
-def test_file_that_is_not_xml_is_refused_in_its_first_line(content):
-    assert error_of(content).line == 1
-
-
 @pytest.mark.parametrize(('content', 'line'), [
+    # What is no XML.
+    (b'{\n  "sdf": 1\n}\n', 1), (b'solid part\n facet normal 0 0 1\nendsolid part\n', 1),
+    (b'\0\n\1\n', 1),
+    # What has no end.
     (b'<sdf version="1.9">\n<model name="m">\n', 2), (b'<sdf version="1.9">\n<!-- ', 2),
-    (b'{\n  "sdf": "<sdf>"\n}\n', 3), (b' \n', 1), (b'', 1)], ids=repr)
-def test_what_is_missing_at_the_end_of_a_file_is_missed_in_its_last_line(content, line):
-    assert error_of(content).line == line
-
-
-def test_error_has_the_line_of_broken_xml():
-    error = error_of(b'<sdf version="1.9">\n<model name="m">\n</sdf>')
-    assert (error.file, error.line) == ('file.sdf', 3)
+    (b'{\n  "sdf": "<sdf>"\n}\n', 3), (b' \n', 1), (b'', 1),
+    (b'<sdf version="1.9">\n<model name="m">\n</sdf>', 3),
+    (f' \n\n<?xml version="1.0"?>\n<a>{MANY_PREFIXES}<b c="1" c="2"/></a>'.encode(), 154),
+], ids=range(10))
+def test_error_has_the_file_and_the_line_of_the_fault(content, line):
+    error = error_of(content)
+    assert (error.file, error.line) == ('file.sdf', line)
 
 
 @pytest.mark.parametrize('content', [
@@ -143,11 +123,6 @@ def test_error_has_the_line_of_broken_xml():
 def test_error_behind_many_undeclared_prefixes_is_reported(content):
     error = only_error('\n' + model_file(f'{MANY_PREFIXES}{content}'))
     assert (error.code, error.line) == ('FILE_READ', 152)
-
-
-def test_error_behind_a_declaration_that_does_not_stand_first_has_its_line():
-    text = f' \n\n<?xml version="1.0"?>\n<a>{MANY_PREFIXES}<b c="1" c="2"/></a>'
-    assert error_of(text.encode()).line == 154
 
 
 # Hostile files

@@ -105,17 +105,30 @@ def test_uri_that_is_not_found_has_its_own_line(errors_in):
     assert error.line == 2
 
 
-@pytest.mark.parametrize(('text', 'code'), [
-    ('', 'FILE_READ'),
-    ('<robot name="r"/>', 'PARSING_ERROR'),
-    ('<sdf version="2.0"/>', 'CONVERSION_ERROR'),
-    (model_file('<pose relative_to="x"/>' + LINK), 'ATTRIBUTE_INVALID'),
-    (model_file('<link name="x::l"/>'), 'RESERVED_NAME'),
-    (model_file('<link name="l"><pose relative_to="x"/></link>'), 'POSE_RELATIVE_TO_INVALID'),
-    (model_file(''), 'MODEL_WITHOUT_LINK'),
+OVERRIDING = include(
+    'bad.sdf', '<pose>1 2 3 0 0 0</pose><static>true</static>')
+
+
+@pytest.mark.parametrize(('including', 'text', 'code'), [
+    *((include('bad.sdf'), text, code) for text, code in (
+        ('', 'FILE_READ'),
+        ('<robot name="r"/>', 'PARSING_ERROR'),
+        ('<sdf version="2.0"/>', 'CONVERSION_ERROR'),
+        (model_file('<pose relative_to="x"/>' + LINK), 'ATTRIBUTE_INVALID'),
+        (model_file('<link name="x::l"/>'), 'RESERVED_NAME'),
+        (model_file('<link name="l"><pose relative_to="x"/></link>'), 'POSE_RELATIVE_TO_INVALID'),
+        (model_file(''), 'MODEL_WITHOUT_LINK'))),
+    # Values that the include overrides are checked too.
+    *((OVERRIDING, text, 'ELEMENT_INVALID') for text in (
+        model_file(f'<pose>1 2</pose>{LINK}'), model_file(f'<static>maybe</static>{LINK}'),
+        model_file(f'<pose/><pose>1 x</pose>{LINK}'),
+        '<sdf version="1.9"><light name="m" type="point"><pose>1 2</pose></light></sdf>',
+        model_file(LINK).replace('</sdf>', '<world name="w"><gravity>x</gravity></world></sdf>'))),
+    (OVERRIDING.replace('<include', '<include merge="true"'),
+     model_file('<pose>1 2</pose><frame name="f"/><static>true</static>'), 'ELEMENT_INVALID'),
 ])
-def test_error_in_an_included_file_has_that_file(errors_in, tmp_path, text, code):
-    (error,) = errors_in(include('bad.sdf'), bad=text)
+def test_error_in_an_included_file_has_that_file(errors_in, tmp_path, including, text, code):
+    (error,) = errors_in(including, bad=text)
     assert (error.code, error.file) == (code, str(tmp_path / 'bad.sdf'))
 
 
@@ -346,20 +359,6 @@ def test_include_in_an_included_file_is_replaced(scene_of):
     assert_at(scene, 'm::leaf::body', (1, 1, 5))
 
 
-@pytest.mark.parametrize(('attributes', 'text'), [
-    ('', model_file(f'<pose>1 2</pose>{LINK}')),
-    ('', model_file(f'<static>maybe</static>{LINK}')),
-    ('', model_file(f'<pose/><pose>1 x</pose>{LINK}')),
-    ('', '<sdf version="1.9"><light name="m" type="point"><pose>1 2</pose></light></sdf>'),
-    ('', model_file(LINK).replace('</sdf>', '<world name="w"><gravity>x</gravity></world></sdf>')),
-    ('merge="true"', model_file('<pose>1 2</pose><frame name="f"/><static>true</static>')),
-])
-def test_value_that_an_include_overrides_is_checked(errors_in, tmp_path, attributes, text):
-    overrides = '<pose>1 2 3 0 0 0</pose><static>true</static>'
-    (error,) = errors_in(include('bad.sdf', overrides, attributes), bad=text)
-    assert (error.code, error.file) == ('ELEMENT_INVALID', str(tmp_path / 'bad.sdf'))
-
-
 @pytest.mark.parametrize('text', [
     model_file(LINK).replace('name="m"', 'name="__m__"'),
     model_file(LINK).replace('name="m"', 'name="m" placement_frame="none"'),
@@ -417,17 +416,13 @@ def test_file_that_is_included_twice_has_independent_copies(scene_of):
 
 # A file with an include at its top
 
-def with_include_at_the_top(content):
-    return {'outer': f'<sdf version="1.9">{content}</sdf>'}
-
-
 @pytest.mark.parametrize(('content', 'code'), [
     (include('none.sdf'), 'URI_LOOKUP'),
     (include(attributes='merge="true"'), 'MERGE_INCLUDE_UNSUPPORTED'),
     (include() + include(content='<name>b</name>'), 'ELEMENT_INCORRECT_TYPE'),
 ])
 def test_wrong_include_at_the_top_is_refused(errors_in, content, code):
-    errors = errors_in(include('outer.sdf'), **with_include_at_the_top(content))
+    errors = errors_in(include('outer.sdf'), outer=f'<sdf version="1.9">{content}</sdf>')
     assert [error.code for error in errors] == [code]
 
 
@@ -435,7 +430,7 @@ def test_include_at_the_top_is_placed_in_the_including_file(scene_of):
     content = include(content='<pose relative_to="desk">1 0 0 0 0 0</pose>')
     scene = scene_of(
         posed('frame', 'desk', '0 0 50 0 0 0') + include('outer.sdf'),
-        **with_include_at_the_top(content))
+        outer=f'<sdf version="1.9">{content}</sdf>')
     assert_at(scene, 'leaf', (1, 0, 50))
 
 

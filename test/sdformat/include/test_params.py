@@ -74,29 +74,22 @@ def errors(write, tmp_path):
     ('<frame element_id="grip" action="modify" attached_to="none"/>', 'FRAME_ATTACHED_TO_INVALID'),
     ('<joint element_id="hinge" action="modify"><child/></joint>', 'JOINT_CHILD_LINK_INVALID'),
     ('<link element_id="" name="a::b" action="add"/>', 'RESERVED_NAME'),
+    *((f'<link element_id="base">\n{child}</link>', code) for child, code in (
+        ('<pose>0 0 0 0 0 0</pose>', 'ATTRIBUTE_MISSING'),
+        ('<pose action="change"/>', 'ATTRIBUTE_INVALID'),
+        ('<inertial action="remove"/>', 'ELEMENT_MISSING'),
+        ('<visual name="none" action="remove"/>', 'ELEMENT_MISSING'),
+        ('<visual action="replace"/>', 'ATTRIBUTE_MISSING'),
+        ('<joint name="j" action="add"/>', 'ELEMENT_INVALID'),
+        ('<custom:thing action="add"/>', 'ELEMENT_INVALID'),
+        ('<sensor name="s" action="add"/>', 'ATTRIBUTE_MISSING'),
+        ('<pose action="modify">1 2</pose>', 'ELEMENT_INVALID'),
+        ('<pose action="modify" degrees="true" rotation_format="quat_xyzw">0 0 0 0 0 0 1</pose>',
+         'ELEMENT_INVALID'))),
 ])
-def test_wrong_parameter_of_an_element_gives_one_error(errors, params, code):
+def test_wrong_parameter_of_an_element_or_its_child_gives_one_error(errors, params, code):
     (error,) = errors(params)
-    assert (error.code, error.line) == (code, 3)
-    assert error.file.endswith('main.sdf')
-
-
-@pytest.mark.parametrize(('child', 'code'), [
-    ('<pose>0 0 0 0 0 0</pose>', 'ATTRIBUTE_MISSING'),
-    ('<pose action="change"/>', 'ATTRIBUTE_INVALID'),
-    ('<inertial action="remove"/>', 'ELEMENT_MISSING'),
-    ('<visual name="none" action="remove"/>', 'ELEMENT_MISSING'),
-    ('<visual action="replace"/>', 'ATTRIBUTE_MISSING'),
-    ('<joint name="j" action="add"/>', 'ELEMENT_INVALID'),
-    ('<custom:thing action="add"/>', 'ELEMENT_INVALID'),
-    ('<sensor name="s" action="add"/>', 'ATTRIBUTE_MISSING'),
-    ('<pose action="modify">1 2</pose>', 'ELEMENT_INVALID'),
-    ('<pose action="modify" degrees="true" rotation_format="quat_xyzw">0 0 0 0 0 0 1</pose>',
-     'ELEMENT_INVALID'),
-])
-def test_wrong_parameter_of_a_child_gives_one_error(errors, child, code):
-    (error,) = errors(f'<link element_id="base">\n{child}</link>')
-    assert (error.code, error.line) == (code, 4)
+    assert (error.code, error.line) == (code, 3 + params.count('\n'))
     assert error.file.endswith('main.sdf')
 
 
@@ -164,6 +157,12 @@ def test_error_in_the_parameters_of_an_included_file_has_its_place(errors):
     ('<model element_id="tool" action="modify" placement_frame="tip"/>', 'tool', (1, 2, -1)),
     ('<model element_id="tool" name="tool" action="replace"><link name="l"/></model>', 'tool::l',
      (0, 0, 0)),
+    # Numbers are in the unit that is given with them.
+    ('<link element_id="base"><pose action="modify" degrees="true">0 0 0 0 0 180</pose></link>',
+     'base', (0, 0, 0, 0, 0, 1, 0)),
+    # An include in an added model is replaced.
+    (('<model element_id="" name="second" action="add"><include><uri>tool.sdf</uri></include>'
+      '</model>'), 'second::gripper::tip', (0, 0, 4)),
 ])
 def test_parameter_changes_a_pose(load, params, name, pose):
     assert_at(load(params), f'arm::{name}', pose)
@@ -197,12 +196,6 @@ def test_required_value_that_a_parameter_empties_has_its_default(load):
     assert 'arm::base::c' in names_of(scene)
 
 
-def test_include_in_an_added_model_is_replaced(load):
-    params = ('<model element_id="" name="second" action="add"><include><uri>tool.sdf</uri>'
-              '</include></model>')
-    assert_at(load(params), 'arm::second::gripper::tip', (0, 0, 4))
-
-
 def test_include_that_is_added_by_itself_includes_nothing(load):
     scene = load('<model element_id="tool"><include action="add"><uri>tool.sdf</uri></include>'
                  '</model>')
@@ -216,13 +209,12 @@ def test_include_with_parameters_has_a_name_and_a_pose(load):
     assert_at(scene, 'left::grip', (1, 0, 101))
 
 
-def test_parameters_do_not_change_another_include_of_the_file(load, tmp_path):
+def test_parameters_do_not_change_another_include_of_the_file(load):
     pair = ('<sdf version="1.9"><model name="pair"><include><uri>arm.sdf</uri><name>a</name>'
             '<experimental:params><frame element_id="grip"><pose action="remove"/></frame>'
             '</experimental:params></include><include><uri>arm.sdf</uri><name>b</name></include>'
             '</model></sdf>')
-    load('', pair=pair)
-    scene = sdf_pose_bridge.load(tmp_path / 'pair.sdf', resource_paths=[tmp_path])
+    scene = load('', main=pair)
     assert_at(scene, 'pair::a::grip', (1, 0, 0))
     assert_at(scene, 'pair::b::grip', (1, 2, 0))
 
@@ -236,12 +228,11 @@ def test_merged_elements_of_the_included_file_can_be_changed(load):
     assert_at(scene, 'arm::palm', (1, 7, 3))
 
 
-def test_include_that_merges_can_have_parameters(load, tmp_path):
+def test_include_that_merges_can_have_parameters(load):
     rig = ('<sdf version="1.9"><model name="rig"><include merge="true"><uri>arm.sdf</uri>'
            '<pose>10 0 0 0 0 0</pose><experimental:params><frame element_id="grip">'
            '<pose action="remove"/></frame></experimental:params></include></model></sdf>')
-    load('', rig=rig)
-    scene = sdf_pose_bridge.load(tmp_path / 'rig.sdf', resource_paths=[tmp_path])
+    scene = load('', main=rig)
     assert_at(scene, 'rig::grip', (11, 0, 0))
 
 
@@ -271,12 +262,6 @@ def test_parameter_without_an_effect_is_told(load, params, told):
     scene = load(params)
     assert_at(scene, 'arm::base', (1, 0, 0))
     assert told in scene.warnings[0].message
-
-
-def test_changed_numbers_are_in_the_unit_that_is_given_with_them(load):
-    scene = load('<link element_id="base"><pose action="modify" degrees="true">0 0 0 0 0 180'
-                 '</pose></link>')
-    assert_at(scene, 'arm::base', (0, 0, 0, 0, 0, 1, 0))
 
 
 @pytest.mark.parametrize('tag', [

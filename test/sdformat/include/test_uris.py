@@ -119,16 +119,19 @@ def test_relative_path_is_searched_in_the_working_directory_last(tmp_path, monke
     assert found('model://box.sdf', tmp_path, SDF_PATH=str(tmp_path / 'models')) == box
 
 
-@pytest.mark.parametrize('variable', ['GZ_SIM_RESOURCE_PATH', 'SDF_PATH'])
-def test_paths_of_the_environment_are_searched(variable, tmp_path):
-    box = write(tmp_path / 'models', 'box')
-    assert found('model://box', tmp_path, **{variable: f'/nowhere:{tmp_path / "models"}'}) == box
-
-
-def test_package_is_found_by_its_marker(tmp_path):
-    box = write(write_package(tmp_path / 'ws', 'cell'), 'models/box.sdf')
-    assert found('package://cell/models/box.sdf', tmp_path,
-                 AMENT_PREFIX_PATH=f'/nowhere:{tmp_path / "ws"}') == box
+@pytest.mark.parametrize(('file', 'uri', 'variable', 'paths'), [
+    ('models/box', 'model://box', 'GZ_SIM_RESOURCE_PATH', '/nowhere:{}/models'),
+    ('models/box', 'model://box', 'SDF_PATH', '/nowhere:{}/models'),
+    ('ws/share/cell/models/box.sdf', 'package://cell/models/box.sdf', 'AMENT_PREFIX_PATH',
+     '/nowhere:{}/ws'),
+    ('cache/fuel.gazebosim.org/open/models/box/3/meshes/box.sdf',
+     'https://fuel.gazebosim.org/1.0/Open/models/Box/3/files/meshes/box.sdf',
+     'GZ_FUEL_CACHE_PATH', '{}/cache'),
+])
+def test_paths_of_the_environment_are_searched(file, uri, variable, paths, tmp_path):
+    write_package(tmp_path / 'ws', 'cell')
+    box = write(tmp_path, file)
+    assert found(uri, tmp_path, **{variable: paths.format(tmp_path)}) == box
 
 
 @pytest.mark.parametrize(('uri', 'version'), [
@@ -177,12 +180,6 @@ def test_directory_of_the_cache_that_cannot_be_listed_has_nothing(folder, tmp_pa
     loop.symlink_to(loop)
     assert found('https://server/1.0/me/models/box', tmp_path,
                  GZ_FUEL_CACHE_PATH=str(cache)) is None
-
-
-def test_file_of_a_fuel_model_is_found_in_the_cache(tmp_path):
-    box = write(tmp_path / 'cache/fuel.gazebosim.org/open/models/box', '3/meshes/box.sdf')
-    uri = 'https://fuel.gazebosim.org/1.0/Open/models/Box/3/files/meshes/box.sdf'
-    assert found(uri, tmp_path, GZ_FUEL_CACHE_PATH=str(tmp_path / 'cache')) == box
 
 
 @pytest.mark.parametrize(('uri', 'shown'), [
@@ -286,24 +283,16 @@ def test_address_that_names_no_file_is_refused(finder, address, reason):
     ('file:///cells/cell.sdf', '/cells/cell.sdf'),
     ('file://localhost/cells/cell.sdf', '/cells/cell.sdf'),
     ('file:///cells/left%20cell%23.sdf', '/cells/left cell#.sdf'),
-])
-def test_address_of_an_absolute_path(finder, address, path):
-    assert finder.path_from_address(address) == Path(path)
-
-
-@pytest.mark.parametrize(('address', 'path'), [
     ('model://table', 'models/table'),
     ('package://cell_description/worlds/cell.sdf', 'ws/share/cell_description/worlds/cell.sdf'),
     ('package://cell_description/left%20cell.sdf', 'ws/share/cell_description/left cell.sdf'),
     ('package://cell_description', 'ws/share/cell_description'),
+    ('cell.sdf', 'cell.sdf'),
 ])
-def test_address_in_a_package_or_of_a_model(finder, tmp_path, address, path):
-    assert finder.path_from_address(address) == tmp_path / path
-
-
-def test_relative_address_starts_at_the_working_directory(finder, monkeypatch, tmp_path):
+def test_address_is_absolute_or_starts_at_what_it_names_or_at_the_working_directory(
+        finder, monkeypatch, tmp_path, address, path):
     monkeypatch.chdir(tmp_path)
-    assert finder.path_from_address('cell.sdf') == tmp_path / 'cell.sdf'
+    assert finder.path_from_address(address) == tmp_path / path
 
 
 def test_tilde_in_an_address_is_the_home_directory(finder, monkeypatch):
