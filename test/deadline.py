@@ -8,18 +8,20 @@ DEADLINE_S = 600.0
 """Longest wait for an event; a test that passes waits for a small part of it on any machine."""
 
 
-def wait_until(is_true, step=lambda: time.sleep(0.01), what=lambda: 'it'):
+def wait_until(is_true, step=lambda: time.sleep(0.01), what='it'):
     """
     Repeat a step until a condition is true.
 
-    :param what: returns what did not happen, for the message of the failure.
+    :param what: what did not happen, or a function that returns it, for the message of the
+        failure.
     """
     ends_at = time.monotonic() + DEADLINE_S
     while not is_true():
-        assert time.monotonic() < ends_at, f'waited in vain for {what()}'
+        assert time.monotonic() < ends_at, (
+            f'waited in vain for {what() if callable(what) else what}')
         step()
 
 
-def spin_until(executor, is_true, what=lambda: 'it'):
+def spin_until(executor, is_true, what='it'):
     """Run callbacks of an executor until a condition is true; as :func:`wait_until`."""
     wait_until(is_true, lambda: executor.spin_once(timeout_sec=0.01), what)

@@ -156,4 +156,4 @@ def name_at(page, x, y):
 
 def wait_for_name_at(page, x, y, name):
     # Nothing says when the axes and bodies are drawn; until then there is no name.
-    wait_until(lambda: name_at(page, x, y) == name, lambda: None, lambda: name)
+    wait_until(lambda: name_at(page, x, y) == name, lambda: None, name)

@@ -53,7 +53,7 @@ def last_x(listener, frame='crate/body'):
 
 
 def wait_for_x(listener, x, frame='crate/body'):
-    listener.wait(lambda: last_x(listener, frame) == x, lambda: f'x = {x}')
+    listener.wait(lambda: last_x(listener, frame) == x, f'x = {x}')
 
 
 def asked(listener, service_type, node=BRIDGE, **fields):
@@ -158,7 +158,7 @@ class Monitor:
     def wait_for_more(self):
         """Wait for a status that is sent after this call."""
         count = self.count
-        self._listener.wait(lambda: self.count > count + 1, lambda: 'diagnostics')
+        self._listener.wait(lambda: self.count > count + 1, 'diagnostics')
         return self.status
 
 

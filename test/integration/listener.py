@@ -87,7 +87,7 @@ class Listener:
             self._clients[name] = self.node.create_client(
                 service_type, name, qos_profile=qos_profile_parameters)
         client = self._clients[name]
-        self.wait(client.service_is_ready, lambda: name)
+        self.wait(client.service_is_ready, name)
         return Answer(client, request, may_be_lost=is_new)
 
     def call(self, service_type, name, request):
@@ -96,7 +96,7 @@ class Listener:
 
     def response(self, answer):
         """Wait for an answer, and return the response."""
-        self.wait(answer.done, lambda: f'an answer from {answer.service}')
+        self.wait(answer.done, f'an answer from {answer.service}')
         return answer.result()
 
     def end(self):
@@ -179,7 +179,7 @@ class JointPublisher:
         if topic not in self._publishers:
             self._publishers[topic] = self._listener.node.create_publisher(JointState, topic, 10)
         self._listener.wait(
-            self._publishers[topic].get_subscription_count, lambda: f'a subscription to {topic}')
+            self._publishers[topic].get_subscription_count, f'a subscription to {topic}')
         message = JointState(
             name=names or list(positions), position=list(map(float, positions.values())))
         message.header.stamp.sec, message.header.stamp.nanosec = self._sec, nanosec

@@ -66,7 +66,7 @@ def test_poses_are_given_in_the_frame_that_is_set(bridge, file, start_listener):
 def test_parameters_set_in_one_call_take_effect_together(file, listener):
     set_parameters(
         listener, sdf_file=str(file), frame_prefix='a/', root_frame='map', watch=True)
-    listener.wait(lambda: len(listener.tf_messages) == 2, lambda: 'the new frames')
+    listener.wait(lambda: len(listener.tf_messages) == 2, 'the new frames')
     ids = {(each.header.frame_id, each.child_frame_id)
            for each in listener.tf_messages[1].transforms}
     assert ids == {('map', 'a/crate/body'), ('a/crate/body', 'a/crate')}
@@ -108,7 +108,7 @@ def test_everything_is_published_again_at_a_rate(bridge, start_listener):
     listener.node.create_subscription(
         TFMessage, '/tf_static', listener.tf_messages.append, 10)
     set_parameters(listener, publish_rate=20.0)
-    listener.wait(lambda: len(listener.tf_messages) > 2, lambda: 'messages without latching')
+    listener.wait(lambda: len(listener.tf_messages) > 2, 'messages without latching')
     stamps = [(each.transforms[0].header.stamp.sec, each.transforms[0].header.stamp.nanosec)
               for each in listener.tf_messages[:3]]
     assert stamps == sorted(set(stamps))

@@ -116,14 +116,14 @@ def assert_expected_transforms(transforms):
 
 
 def test_tf_static_has_every_transform_in_one_message(listener):
-    listener.wait(lambda: listener.tf_messages, lambda: '/tf_static')
+    listener.wait(lambda: listener.tf_messages, '/tf_static')
     (message,) = listener.tf_messages
     assert len(message.transforms) == len(PARENTS_AND_POSES)
     assert_expected_transforms(message.transforms)
 
 
 def test_they_are_those_of_the_one_message_with_its_stamp(listener):
-    listener.wait(lambda: listener.tf_messages, lambda: '/tf_static')
+    listener.wait(lambda: listener.tf_messages, '/tf_static')
     listener.wait_for_keys(listener.transforms, PARENTS_AND_POSES)
     (message,) = listener.tf_messages
     assert {each.child_frame_id: each for each in message.transforms} == listener.transforms
@@ -140,7 +140,7 @@ def test_every_frame_has_its_pose_in_the_root_frame(listener):
 
 
 def test_the_type_of_tf_static_is_the_one_on_every_ros_machine(late_listener):
-    late_listener.wait(lambda: late_listener.tf_messages, lambda: '/tf_static')
+    late_listener.wait(lambda: late_listener.tf_messages, '/tf_static')
     (publisher,) = late_listener.node.get_publishers_info_by_topic('/tf_static')
     assert publisher.topic_type == 'tf2_msgs/msg/TFMessage'
     assert str(publisher.topic_type_hash) == TF_MESSAGE_HASH
@@ -154,7 +154,7 @@ def test_models_that_are_not_anchored_still_have_poses(start_bridge, start_liste
     listener.listen_to_poses(TOPICS.values())
     listener.wait_for_keys(listener.poses, TOPICS.values())
     listener.wait_for_keys(listener.transforms, PARENTS_AND_POSES.keys() - {'robot/base'})
-    listener.wait(lambda: listener.tf_messages, lambda: '/tf_static')
+    listener.wait(lambda: listener.tf_messages, '/tf_static')
     (message,) = listener.tf_messages
     assert 'robot/base' not in {each.child_frame_id for each in message.transforms}
     xyz = listener.poses[TOPICS['robot/base']].pose.position

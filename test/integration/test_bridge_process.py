@@ -157,7 +157,7 @@ def test_a_negative_time_on_the_clock_does_not_end_it(start, start_listener):
         clock.publish(Clock(clock=Time(sec=-1)))
         return any('internal error in a callback: ' in line for line in bridge.lines)
 
-    listener.wait(is_reported, lambda: bridge.lines)
+    listener.wait(is_reported, bridge.lines)
     assert reload(listener).success
 
 

@@ -50,11 +50,11 @@ def test_a_moved_frame_is_moved_on_every_topic(file, listener):
     listener.node.create_subscription(
         PoseStamped, f'{BRIDGE}/poses/crate/body',
         lambda message: places.append(message.pose.position.x), latched(10))
-    listener.wait(lambda: transforms and places, lambda: 'what was published before')
+    listener.wait(lambda: transforms and places, 'what was published before')
     replace(file, world(2))
     wait_for_x(listener, 2.0)
-    listener.wait(lambda: ('crate/body', 2.0) in transforms, lambda: transforms)
-    listener.wait(lambda: places[-1:] == [2.0], lambda: places)
+    listener.wait(lambda: ('crate/body', 2.0) in transforms, transforms)
+    listener.wait(lambda: places[-1:] == [2.0], places)
 
 
 @pytest.mark.parametrize(('new', 'expected'), [
@@ -70,7 +70,7 @@ def test_a_late_listener_gets_nothing_of_what_was_before(
     late = start_listener()
     transforms = listen_to_transforms(late, latched(100))
     listen_to_tf(late)
-    late.wait(lambda: late.tf_messages and expected <= set(transforms), lambda: transforms)
+    late.wait(lambda: late.tf_messages and expected <= set(transforms), transforms)
     set_parameters(late, watch=True)  # by the answer, whatever came with the rest is here
     assert sorted(transforms) == sorted(expected)
     assert {each.child_frame_id for each in late.tf_messages[0].transforms} == {

@@ -56,7 +56,7 @@ def test_measured_poses_go_into_the_files(
         joints.send({'turn': pi / 2})
         return call(client, LookupPose, frame='arm/tool').pose.pose.position.y
 
-    client.wait(lambda: abs(tool_y() - 1.0) < 1e-9, lambda: 'the tool at y = 1')
+    client.wait(lambda: abs(tool_y() - 1.0) < 1e-9, 'the tool at y = 1')
     answer = ask(client, 'fixture', 0.5, 'arm/tool')
     assert (answer.success, answer.message) == (True, '')
     assert (answer.file, answer.line) == (str(path), 5)
@@ -77,8 +77,7 @@ def test_measured_poses_go_into_the_files(
     assert 'did you mean "arm/tool"' in refused.message
 
 
-@pytest.mark.usefixtures('bridge')
-def test_nobody_can_switch_it_on_while_the_node_runs(start_listener):
+def test_nobody_can_switch_it_on_while_the_node_runs(bridge, start_listener):
     client = start_listener()
     assert 'allow_set_pose' in reason_for_refusal(client, allow_set_pose=True)
 

@@ -137,7 +137,7 @@ def test_many_clients_at_once_are_all_answered(listener):
             LookupPose, f'{BRIDGE}/lookup_pose', qos_profile=qos_profile_parameters)
         for _ in range(CLIENTS)]
     for client in clients:
-        listener.wait(client.service_is_ready, lambda: 'the service')
+        listener.wait(client.service_is_ready, 'the service')
     answers = [Answer(client, LookupPose.Request(frame='crate::body')) for client in clients]
     assert all(listener.response(answer).success for answer in answers)
 

@@ -54,8 +54,7 @@ def bridge(start_shared_bridge):
         sdf_file=EXAMPLES / 'work_cell.sdf', publish_rate=1.0).wait_until_started()
 
 
-@pytest.mark.usefixtures('bridge')
-def test_it_logs_pose_lookup_and_rotation(start_client):
+def test_it_logs_pose_lookup_and_rotation(bridge, start_client):
     client = start_client(frame='fixture', relative_to='table')
     client.wait_for_line(': fixture in world: xyz ')
     client.wait_for_line(': fixture in table: xyz ')
@@ -64,8 +63,7 @@ def test_it_logs_pose_lookup_and_rotation(start_client):
     assert client.wait_for_end() == 0
 
 
-@pytest.mark.usefixtures('bridge')
-def test_it_logs_why_a_lookup_was_refused(start_client):
+def test_it_logs_why_a_lookup_was_refused(bridge, start_client):
     start_client(frame='fixture', relative_to='tabel').wait_for_line('"tabel"')
 
 

@@ -114,8 +114,7 @@ def test_a_file_that_cannot_be_read_any_more_is_reported_and_its_repair_noticed(
     wait_for_x(listener, 2.0)
 
 
-@pytest.mark.usefixtures('bridge')
-def test_a_config_map_that_is_replaced_is_noticed(listener, tmp_path):
+def test_a_config_map_that_is_replaced_is_noticed(bridge, listener, tmp_path):
     # As Kubernetes does: cell.sdf -> ..data/cell.sdf, and ..data -> a folder for each version.
     for version, x in (('..1', 1.5), ('..2', 2)):
         (tmp_path / version).mkdir()
@@ -330,7 +329,7 @@ def test_a_bridge_that_can_process_no_message_says_so_and_ends(
     bridge = start_bridge(program=WITH_DEFECT, sdf_file=file, use_joint_states=True)
     monitor.wait_for(DiagnosticStatus.ERROR)
     assert monitor.status.message == DEFECT
-    listener.wait(lambda: not bridge.is_running, lambda: 'the end of the bridge')
+    listener.wait(lambda: not bridge.is_running, 'the end of the bridge')
     assert bridge.wait_for_end() == 1
     assert 'sdf_pose_bridge: thread "joint states" has failed, so the node ends' in bridge.lines
     assert sum('internal error in' in line for line in bridge.lines) == 1
@@ -427,8 +426,8 @@ def test_a_full_disk_for_the_log_and_a_full_terminal_end_nothing(
         assert process.wait(DEADLINE_S) == 0
 
 
-@pytest.mark.usefixtures('bridge')
-def test_an_included_file_that_changes_during_the_load_is_read_again(listener, file, tmp_path):
+def test_an_included_file_that_changes_during_the_load_is_read_again(
+        bridge, listener, file, tmp_path):
     def model(name, x):
         return (f'<sdf version="1.10"><model name="{name}"><pose>{x} 0 0 0 0 0</pose>'
                 '<link name="body"/></model></sdf>')
@@ -457,8 +456,7 @@ def test_listeners_follow_a_bridge_that_was_killed_and_started_again(start, file
     assert reload(listener).success
 
 
-@pytest.mark.usefixtures('bridge')
-def test_a_clock_that_jumps_back_keeps_nothing_from_being_published(file, listener):
+def test_a_clock_that_jumps_back_keeps_nothing_from_being_published(bridge, file, listener):
     set_parameters(listener, use_sim_time=True, publish_rate=20.0)
     wait_for_x(listener, 1.0)
     clock = listener.node.create_publisher(Clock, '/clock', 1)
@@ -477,9 +475,8 @@ def test_a_clock_that_jumps_back_keeps_nothing_from_being_published(file, listen
         assert stamp() == seconds
 
 
-@pytest.mark.usefixtures('bridge')
 def test_a_listener_that_is_stopped_keeps_nobody_waiting_and_gets_the_last(
-        file, listener, start_program):
+        bridge, file, listener, start_program):
     set_parameters(listener, publish_rate=100.0)
     wait_for_x(listener, 1.0)
     stopped = start_program([sys.executable, '-c', LISTENING])

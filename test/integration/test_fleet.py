@@ -55,7 +55,7 @@ def move(joints, tf, topic, robot, turn, lift):
         found = [tf.last.get(f'{robot}/{link}') for link in ('arm', 'hand')]
         return all(each is not None and each.header.stamp.sec in stamps for each in found)
 
-    tf.listener.wait(has_moved, lambda: tf.last)
+    tf.listener.wait(has_moved, tf.last)
 
 
 def check_poses(tf, **robots):
@@ -69,8 +69,7 @@ def check_poses(tf, **robots):
         assert tf.last[f'{robot}/hand'].transform.translation.z == lift
 
 
-@pytest.mark.usefixtures('bridge')
-def test_each_robot_follows_its_own_topic_also_after_a_reload(file, joints, tf):
+def test_each_robot_follows_its_own_topic_also_after_a_reload(bridge, file, joints, tf):
     set_parameters(tf.listener, use_joint_states=True, publish_frequency=20.0)
     wait_for_topics(
         tf, '/joint_states', '/r1/joint_states', '/r2/joint_states', '/r3/joint_states')
@@ -88,8 +87,7 @@ def test_each_robot_follows_its_own_topic_also_after_a_reload(file, joints, tf):
         tf, r1=(10, 0.6, 3.0), r3=(30, 0.3, 1.5), r4=(40, 0.4, 2.0), r5=(50, 0.5, 2.5))
 
 
-@pytest.mark.usefixtures('bridge')
-def test_topics_of_gazebo_can_be_followed_and_changed(joints, tf):
+def test_topics_of_gazebo_can_be_followed_and_changed(bridge, joints, tf):
     set_parameters(
         tf.listener, use_joint_states=True, model='r2',
         joint_states_topics=['/world/{world}/model/{model}/joint_state'])
@@ -123,12 +121,11 @@ def test_topics_that_become_one_are_reported_and_lose_nothing(start_bridge, file
         stamps.add(joints.send({'r1/turn': 0.5, 'r2/turn': 0.25}, topic='both'))
         return {'r1/arm', 'r2/arm'} <= tf.last.keys()
 
-    tf.listener.wait(have_moved, lambda: tf.last)
+    tf.listener.wait(have_moved, tf.last)
     move(joints, tf, 'r3/joint_states', 'r3', 0.5, 0.5)
 
 
-@pytest.mark.usefixtures('bridge')
-def test_too_many_topics_are_rejected_in_a_setting_and_in_a_file(file, tf):
+def test_too_many_topics_are_rejected_in_a_setting_and_in_a_file(bridge, file, tf):
     set_parameters(tf.listener, use_joint_states=True, watch=False)
     patterns = [f'{{model}}/j{number}' for number in range(400)]
     assert reason_for_refusal(tf.listener, joint_states_topics=patterns).startswith(

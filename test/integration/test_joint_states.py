@@ -74,33 +74,32 @@ def follow(bridge, joints, tf):
             stamps.add(joints.send({'turn': 0.0, 'lift': 0.0}))
             return 'upper' in tf.last and tf.last['upper'].header.stamp.sec in stamps
 
-        tf.listener.wait(is_connected, lambda: 'the first message')
+        tf.listener.wait(is_connected, 'the first message')
         return bridge
     return follow
 
 
-@pytest.mark.usefixtures('bridge')
-def test_before_the_first_message_all_joints_can_be_at_zero(file, tf):
+def test_before_the_first_message_all_joints_can_be_at_zero(bridge, file, tf):
     poses = listen_to_poses(tf, 'tool')
     set_parameters(tf.listener, use_joint_states=True, unreported_joints='zero')
-    tf.listener.wait(lambda: tf.last.keys() >= MOVED, lambda: 'all moving frames')
+    tf.listener.wait(lambda: tf.last.keys() >= MOVED, 'all moving frames')
     assert tf.last['slide'].transform.translation.z == 1.0
     listen_to_tf(tf.listener)
-    tf.listener.wait(lambda: tf.listener.tf_messages, lambda: '/tf_static')
+    tf.listener.wait(lambda: tf.listener.tf_messages, '/tf_static')
     fixed = {each.child_frame_id for each in tf.listener.tf_messages[0].transforms}
     assert fixed == {'arm', 'tool'}, 'and nothing for base, whose parent is odometry'
     replace(file, ARM.format(tool=2))
-    tf.listener.wait(lambda: poses and poses['tool'].pose.position.x == 2.0, lambda: poses)
+    tf.listener.wait(lambda: poses and poses['tool'].pose.position.x == 2.0, poses)
 
 
 def test_joints_that_no_message_has_named_are_nowhere_until_their_driver_is_up(
         start_bridge, file, joints, tf):
     bridge = start_bridge(sdf_file=file, use_joint_states=True, anchor_models='all')
-    tf.listener.wait(lambda: joints.send({'turn': 0.0}) and tf.last, lambda: 'the first message')
+    tf.listener.wait(lambda: joints.send({'turn': 0.0}) and tf.last, 'the first message')
     poses = listen_to_poses(tf, 'base', 'upper', 'slide', 'tool', 'finger')
     transforms = listen_to_transforms(tf)
     tf.listener.wait(
-        lambda: 'upper' in transforms and poses.keys() >= {'base', 'upper'}, lambda: poses)
+        lambda: 'upper' in transforms and poses.keys() >= {'base', 'upper'}, poses)
     # On a busy machine the first message may come after the line.
     bridge.wait_for_line('no message has named ')
     assert tf.last.keys() == {'upper'}
@@ -112,7 +111,7 @@ def test_joints_that_no_message_has_named_are_nowhere_until_their_driver_is_up(
     assert pose_of(tf, 'upper').z == 1.0
     tf.wait_for('slide', joints.send({'lift': 0.25}))
     bridge.wait_for_line('all joints have been reported now')
-    tf.listener.wait(lambda: len(poses) == 5 and 'finger' in transforms, lambda: poses)
+    tf.listener.wait(lambda: len(poses) == 5 and 'finger' in transforms, poses)
     assert tf.last['finger'].transform.translation.x == 0.5, 'the mimic follows its leader'
     assert (pose_of(tf, 'tool').z, poses['tool'].pose.position.z) == (2.25, 2.25)
 
@@ -169,7 +168,7 @@ def test_later_listeners_get_the_last_positions(follow, joints, tf):
     # The message of an earlier position may come first.
     tf.listener.wait(
         lambda: len(transforms) == 5 and poses and heights() == (1.5, 2.5),
-        lambda: (transforms, poses))
+        (transforms, poses))
 
 
 def listen_to_transforms(tf):
@@ -235,7 +234,7 @@ def test_the_rate_can_be_set_while_joints_move(follow, joints, tf):
         tf.listener.wait(
             lambda rate=rate: joints.send({'lift': rate / 100})
             and tf.last['slide'].transform.translation.z == 1 + rate / 100,
-            lambda: tf.last)
+            tf.last)
 
 
 def test_following_can_be_switched_off_and_on(follow, joints, tf):
@@ -246,9 +245,9 @@ def test_following_can_be_switched_off_and_on(follow, joints, tf):
     tf.listener.wait(
         lambda: tf.listener.tf_messages and {
             each.child_frame_id for each in tf.listener.tf_messages[-1].transforms} >= MOVED,
-        lambda: 'all frames on /tf_static')
+        'all frames on /tf_static')
     tf.listener.wait(
-        lambda: not tf.listener.node.count_subscribers('/joint_states'), lambda: 'its end')
+        lambda: not tf.listener.node.count_subscribers('/joint_states'), 'its end')
     set_parameters(tf.listener, use_joint_states=True)
     late = listen_to_poses(tf, 'base', 'slide')
     tf.listener.wait(lambda: 'base' in late, lambda: late)

@@ -60,7 +60,7 @@ def test_transforms_name_the_models_that_they_move(follow, tf, tracker):
                 (7, '', 'wall'), (8, 'elsewhere', 'arm'))]), '/poses')
         return tf.last.keys() >= {'cart/deck', 'cart/crate/box', 'arm/base'}
 
-    tf.listener.wait(are_there, lambda: tf.last)
+    tf.listener.wait(are_there, tf.last)
     assert [tf.last[each].transform.translation.x for each in (
         'cart/deck', 'cart/crate/box', 'arm/base')] == [4.0, 5.0, 6.0]
     bridge.wait_for_line('/poses has poses of "wall", which are ignored')
@@ -75,7 +75,7 @@ def test_a_tracker_may_come_late_stop_and_come_back_with_another_type(follow, tf
     assert 'depends on the pose of model "cart", which has not been reported' in answer.message
     tracker.move(3.0)
     tracker.stop()
-    tf.listener.wait(lambda: not tf.listener.node.count_publishers(CART), lambda: 'its end')
+    tf.listener.wait(lambda: not tf.listener.node.count_publishers(CART), 'its end')
     assert pose_of(tf, 'cart').x == 3.0
     tracker.move(4.0, message_type=Odometry)
 
@@ -97,7 +97,7 @@ def test_poses_in_a_frame_that_moves_follow_it(follow, tf, tracker, joints):
     follow(use_joint_states=True)
     tracker.move(5.0, 'arm/base', topic='/tracker/arm/pose')
     tf.listener.wait(
-        lambda: joints.send({'lift': 0.25}) and 'arm/hand' in tf.last, lambda: 'the hand')
+        lambda: joints.send({'lift': 0.25}) and 'arm/hand' in tf.last, 'the hand')
     tf.wait_for('arm/hand', joints.send({'lift': 0.5}))
     # The base of the arm is turned by a quarter.
     found = tracker.move(1.0, seen_x=5.0, frame_id='arm/hand').transform
@@ -136,18 +136,17 @@ def test_models_keep_their_poses_when_the_file_is_read_again(follow, file, tf, t
     replace(file, WORLD.format(height=0.75))
     assert reload(tf.listener).success
     tf.listener.wait(
-        lambda: tf.last['cart/deck'].transform.translation.z == 0.75, lambda: tf.last)
+        lambda: tf.last['cart/deck'].transform.translation.z == 0.75, tf.last)
     assert (pose_of(tf, 'cart/deck').x, pose_of(tf, 'cart/deck').z) == (3.0, 0.75)
     tracker.move(4.0)
 
 
-@pytest.mark.usefixtures('bridge')
-def test_models_can_be_where_the_file_puts_them_at_first(follow, tf):
+def test_models_can_be_where_the_file_puts_them_at_first(bridge, follow, tf):
     follow(unreported_joints='zero')
-    tf.listener.wait(lambda: 'cart/deck' in tf.last, lambda: tf.last)
+    tf.listener.wait(lambda: 'cart/deck' in tf.last, tf.last)
     assert tf.last['cart/deck'].transform.translation.x == 1.0
     listen_to_tf(tf.listener)
-    tf.listener.wait(lambda: tf.listener.tf_messages, lambda: '/tf_static')
+    tf.listener.wait(lambda: tf.listener.tf_messages, '/tf_static')
     fixed = {each.child_frame_id for each in tf.listener.tf_messages[-1].transforms}
     assert 'arm/hand' in fixed, 'as joints do not move'
     assert fixed.isdisjoint({'cart/deck', 'arm/base', 'cart/crate/box'})
@@ -158,7 +157,7 @@ def test_the_example_moves_the_part_of_the_work_cell(start_bridge, start_program
         sdf_file=EXAMPLES / 'work_cell.sdf', model_pose_topics=[TOPIC]).wait_until_started()
     start_program([
         sys.executable, EXAMPLES / 'track_part.py', '--ros-args', '-p', 'frame:=robot/tool0'])
-    tf.listener.wait(lambda: 'gear_housing/body' in tf.last, lambda: tf.last)
+    tf.listener.wait(lambda: 'gear_housing/body' in tf.last, tf.last)
     answer = call(tf.listener, LookupPose, frame='gear_housing', relative_to='robot/tool0')
     position = answer.pose.pose.position
     assert math.hypot(position.x, position.y) == pytest.approx(0.1)

@@ -38,7 +38,7 @@ def test_another_parent_on_tf_is_in_the_log_and_in_diagnostics_until_its_node_is
     bridge = start_bridge(sdf_file=file).wait_until_started()
     listener, sender = start_listener(), start_listener()
     listener.listen_to_frames()
-    listener.wait(lambda: listener.tf_messages, lambda: '/tf_static')
+    listener.wait(lambda: listener.tf_messages, '/tf_static')
     monitor = Monitor(listener)
     monitor.wait_for(DiagnosticStatus.OK)
     transform = TransformStamped(

@@ -33,7 +33,7 @@ def texts_of(listener):
 
 
 def wait_for_text(listener, texts, text):
-    listener.wait(lambda: texts[-1:] == [text], lambda: texts)
+    listener.wait(lambda: texts[-1:] == [text], texts)
 
 
 def topics_of(listener):
@@ -97,10 +97,10 @@ def test_urdf_is_made_of_the_model_and_again_after_each_change(
     texts = texts_of(listener)
     wait_for_text(listener, texts, model(1))
     set_parameters(listener, description_format='urdf')
-    listener.wait(lambda: '<origin xyz="1 0 0" rpy="0 0 0"/>' in texts[-1], lambda: texts)
+    listener.wait(lambda: '<origin xyz="1 0 0" rpy="0 0 0"/>' in texts[-1], texts)
     assert texts[-1].startswith('<?xml version="1.0"?>\n<robot name="crate">')
     replace(file, model(2))
-    listener.wait(lambda: '<origin xyz="2 0 0" rpy="0 0 0"/>' in texts[-1], lambda: texts)
+    listener.wait(lambda: '<origin xyz="2 0 0" rpy="0 0 0"/>' in texts[-1], texts)
     # What cannot be URDF has no topic, and its frames are published all the same.
     replace(file, world(3).replace('</world>', '<model name="n"><link name="l"/></model></world>'))
     bridge.wait_for_line('there is no robot_description, because no URDF can be made')

@@ -71,7 +71,7 @@ def parents_in(messages):
 
 
 def wait_for_stamp(listener, tf, sec):
-    listener.wait(lambda: tf['/tf'][-1].transforms[0].header.stamp.sec == sec, lambda: tf)
+    listener.wait(lambda: tf['/tf'][-1].transforms[0].header.stamp.sec == sec, tf)
 
 
 def topics_of_node(listener):
@@ -85,7 +85,7 @@ def test_the_node_has_the_topics_of_robot_state_publisher_and_no_other(start, li
     descriptions = []
     listener.node.create_subscription(
         String, '/robot_description', descriptions.append, latched(1))
-    listener.wait(lambda: descriptions, lambda: 'the description')
+    listener.wait(lambda: descriptions, 'the description')
     assert descriptions[0].data == URDF
     listener.wait(
         lambda: topics_of_node(listener) == (OWN, {'/joint_states'}),
@@ -95,8 +95,8 @@ def test_the_node_has_the_topics_of_robot_state_publisher_and_no_other(start, li
 def test_links_have_the_parents_that_joints_name_once_these_are_reported(
         start, file, listener, joints, tf):
     program = start(file).wait_until_started()
-    listener.wait(lambda: tf['/tf_static'], lambda: 'the fixed frame')
-    listener.wait(lambda: joints.send({'turn': 0.5}) and tf['/tf'], lambda: 'the first message')
+    listener.wait(lambda: tf['/tf_static'], 'the fixed frame')
+    listener.wait(lambda: joints.send({'turn': 0.5}) and tf['/tf'], 'the first message')
     wait_for_stamp(listener, tf, joints.send({'turn': 0.5}))
     assert parents_in(tf['/tf_static']) == {'tip': 'finger'}
     assert parents_in(tf['/tf']) == {'upper': 'base'}
@@ -112,7 +112,7 @@ def test_a_file_of_parameters_is_taken_with_all_its_names(start, listener, tmp_p
     file = tmp_path / 'parameters.yaml'
     file.write_text(PARAMETERS.format(text=URDF, ignores='false'))
     program = start('--ros-args', '--params-file', file).wait_until_started()
-    listener.wait(lambda: tf['/tf_static'], lambda: 'the fixed frame')
+    listener.wait(lambda: tf['/tf_static'], 'the fixed frame')
     assert not [line for line in program.lines if line.startswith('[WARN]')]
 
 
@@ -124,8 +124,8 @@ def test_a_misspelt_parameter_is_reported(start, file):
 def test_sdformat_has_links_frames_and_sensors_and_its_joints_move(start, listener, joints, tf):
     node = start(robot_description=ARM, frame_prefix='/left/')
     node.wait_for_line('Robot initialized')
-    listener.wait(lambda: joints.send({'turn': 0.5}) and tf['/tf'], lambda: 'the first message')
-    listener.wait(lambda: tf['/tf_static'], lambda: 'the fixed frames')
+    listener.wait(lambda: joints.send({'turn': 0.5}) and tf['/tf'], 'the first message')
+    listener.wait(lambda: tf['/tf_static'], 'the fixed frames')
     assert parents_in(tf['/tf']) == {'left/upper': 'left/base'}
     assert parents_in(tf['/tf_static']) == {
         'left/arm': 'left/base', 'left/f': 'left/arm', 'left/base/eye': 'left/base',

@@ -16,11 +16,10 @@ FILE_TEXT = WORLD.format(height=0.5)
 # The bridge may stop asking between a call and its answer.
 pytestmark = pytest.mark.filterwarnings('ignore:failed to send response:RuntimeWarning')
 
-@pytest.mark.usefixtures('bridge')
-def test_a_simulator_is_asked_for_the_models_that_can_move(tf):
+def test_a_simulator_is_asked_for_the_models_that_can_move(bridge, tf):
     simulator = Simulator(tf, cart=3.0, arm=4.0, wall=5.0, cartoon=6.0)
     set_parameters(tf.listener, simulator=SIMULATOR, root_frame='map')
-    tf.listener.wait(lambda: tf.last.keys() >= {'cart/deck', 'arm/base'}, lambda: tf.last)
+    tf.listener.wait(lambda: tf.last.keys() >= {'cart/deck', 'arm/base'}, tf.last)
     found = tf.last['cart/deck']
     assert (found.header.frame_id, found.header.stamp.sec > 5000) == ('map', True)
     assert (found.transform.translation.x, found.transform.translation.z) == (3.0, 0.5)
@@ -33,7 +32,7 @@ def test_a_simulator_is_asked_for_the_models_that_can_move(tf):
 
 def wait_for_line(tf, bridge, text):
     """Answer calls until the bridge has logged a line."""
-    tf.listener.wait(lambda: any(text in line for line in bridge.lines), lambda: bridge.lines)
+    tf.listener.wait(lambda: any(text in line for line in bridge.lines), bridge.lines)
 
 
 @pytest.mark.parametrize(('simulator', 'prefix'), [
@@ -45,24 +44,24 @@ def test_names_of_entities_may_be_others(bridge, tf, simulator, prefix):
         tf, bridge, f'"arm" in the answers of {prefix}/get_entities_states; for "/World/cart", '
         'set simulator_entity to "/World/{model}"')
     set_parameters(tf.listener, simulator_entity='/World/{model}')
-    tf.listener.wait(lambda: tf.last.keys() >= {'cart/deck', 'arm/base'}, lambda: tf.last)
+    tf.listener.wait(lambda: tf.last.keys() >= {'cart/deck', 'arm/base'}, tf.last)
     assert tf.last['cart/deck'].transform.translation.x == 3.0
 
 
 def test_a_nested_model_keeps_its_place_unless_it_has_a_pose(bridge, tf):
     simulator = Simulator(tf, cart=3.0)
     set_parameters(tf.listener, simulator=SIMULATOR, model_pose_topics=['/tracker/{model}/pose'])
-    tf.listener.wait(lambda: 'cart/crate/box' in tf.last, lambda: tf.last)
+    tf.listener.wait(lambda: 'cart/crate/box' in tf.last, tf.last)
     assert pose_of(tf, 'cart::crate').x == 3.0
     wait_for_line(tf, bridge, 'does not give the poses of "cart::crate", which keep their places')
     tracker = Tracker(tf)
     tracker.sec = 10 * simulator.sec
     tracker.move(1.0, 'cart/crate/box', topic='/tracker/cart/crate/pose')
     count = len(simulator.requests)
-    tf.listener.wait(lambda: len(simulator.requests) > count + 3, lambda: 'calls')
+    tf.listener.wait(lambda: len(simulator.requests) > count + 3, 'calls')
     simulator.sec = 10 * tracker.sec
     tf.listener.wait(
-        lambda: tf.last['cart/deck'].header.stamp.sec > simulator.sec - 10, lambda: tf.last)
+        lambda: tf.last['cart/deck'].header.stamp.sec > simulator.sec - 10, tf.last)
     assert pose_of(tf, 'cart::crate').x == pytest.approx(1.0)
 
 
@@ -71,15 +70,15 @@ def test_other_entities_have_frames_while_they_exist(bridge, tf):
     set_parameters(
         tf.listener, simulator=SIMULATOR, simulator_others=True,
         simulator_entity='/World/{model}')
-    tf.listener.wait(lambda: 'spare/part' in tf.last, lambda: tf.last)
+    tf.listener.wait(lambda: 'spare/part' in tf.last, tf.last)
     found = tf.last['spare/part']
     assert (found.header.frame_id, found.transform.translation.x) == ('world', 6.0)
     assert pose_of(tf, 'spare/part').x == 6.0
     simulator.entities['ball'] = simulator.entities.pop('/spare/part')
-    tf.listener.wait(lambda: 'ball' in tf.last, lambda: tf.last)
+    tf.listener.wait(lambda: 'ball' in tf.last, tf.last)
     wait_for_line(tf, bridge, '1 frame no longer published, which TF listeners keep')
     tf.last.clear()
-    tf.listener.wait(lambda: tf.last.keys() >= {'ball', 'cart/deck'}, lambda: tf.last)
+    tf.listener.wait(lambda: tf.last.keys() >= {'ball', 'cart/deck'}, tf.last)
     assert not tf.last.keys() & {'World/wall', 'World/cart', 'spare/part'}
     reload(tf.listener)
     assert pose_of(tf, 'ball').x == 6.0
@@ -91,9 +90,9 @@ def test_a_simulator_may_start_later_and_be_stopped(bridge, tf):
     set_parameters(tf.listener, simulator=SIMULATOR, simulator_rate=100.0)
     bridge.wait_for_line(f'no poses of models from {SIMULATOR}/get_entities_states: there is no')
     simulator = Simulator(tf, Result.RESULT_INCORRECT_STATE, cart=3.0)
-    tf.listener.wait(lambda: len(simulator.requests) > 2, lambda: 'calls')
+    tf.listener.wait(lambda: len(simulator.requests) > 2, 'calls')
     simulator.result = Result.RESULT_OK
-    tf.listener.wait(lambda: 'cart/deck' in tf.last, lambda: tf.last)
+    tf.listener.wait(lambda: 'cart/deck' in tf.last, tf.last)
     bridge.wait_for_line(
         r'the simulator answers with result 3, which is not OK: paused\n[FATAL] at 5001')
     assert sum('no poses of models' in line for line in bridge.lines) == 2
@@ -104,7 +103,7 @@ def test_the_newest_of_two_sources_counts(bridge, tf):
     simulator = Simulator(tf, cart=3.0)
     set_parameters(
         tf.listener, simulator=SIMULATOR, model_pose_topics=['/tracker/{model}/pose'])
-    tf.listener.wait(lambda: 'cart/deck' in tf.last, lambda: tf.last)
+    tf.listener.wait(lambda: 'cart/deck' in tf.last, tf.last)
     tracker.sec = simulator.sec + 1000
     words = f'"cart" come from several publishers at once on {SIMULATOR}/get_entities_states and'
 
@@ -112,8 +111,8 @@ def test_the_newest_of_two_sources_counts(bridge, tf):
         tracker.move(4.0)
         return any(words in line for line in bridge.lines)
 
-    tf.listener.wait(is_told, lambda: bridge.lines)
+    tf.listener.wait(is_told, bridge.lines)
     count = len(simulator.requests)
-    tf.listener.wait(lambda: len(simulator.requests) > count + 3, lambda: 'calls')
+    tf.listener.wait(lambda: len(simulator.requests) > count + 3, 'calls')
     assert pose_of(tf, 'cart').x == 4.0
     assert sum(words in line for line in bridge.lines) == 1

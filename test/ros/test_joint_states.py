@@ -146,7 +146,7 @@ class Following:
 
     def wait(self, condition):
         """Run callbacks until a condition is true."""
-        spin_until(self._executor, condition, lambda: self.found)
+        spin_until(self._executor, condition, self.found)
 
     def wait_until_taken(self, position):
         """Wait until the thread has taken the message that has a position."""

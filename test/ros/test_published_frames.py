@@ -177,7 +177,7 @@ def publish_topics(frames):
 
 
 def spin_until(node, condition, found):
-    wait_until(condition, lambda: node.executor.spin_once(timeout_sec=0.1), lambda: found)
+    wait_until(condition, lambda: node.executor.spin_once(timeout_sec=0.1), found)
 
 
 def test_moving_frames_are_not_published_with_the_fixed_ones(node, poses):
