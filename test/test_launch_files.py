@@ -171,10 +171,14 @@ def test_rviz_must_be_true_or_false():
         nodes_of('bridge.launch.py', rviz='perhaps')
 
 
-def test_rviz_that_is_not_installed_is_reported_before_anything_starts(monkeypatch):
+@pytest.mark.parametrize(('name', 'arguments', 'package'), [
+    ('bridge.launch.py', {'rviz': 'true'}, 'rviz2, which is not installed'),
+    ('gazebo.launch.py', {}, 'ros_gz_bridge, which is not installed: sudo apt')])
+def test_package_that_is_not_installed_is_reported_before_anything_starts(
+        monkeypatch, name, arguments, package):
     monkeypatch.setenv('AMENT_PREFIX_PATH', '/nonexistent')
-    with pytest.raises(RuntimeError, match='rviz2, which is not installed'):
-        nodes_of('bridge.launch.py', sdf_file='a.sdf', rviz='true')
+    with pytest.raises(RuntimeError, match=package):
+        nodes_of(name, sdf_file='a.sdf', **arguments)
 
 
 @pytest.mark.usefixtures('rviz_installed')
@@ -228,12 +232,6 @@ def test_beside_robot_state_publisher_the_two_publish_different_frames(tmp_path)
             'sdf_file': 'cell.sdf', 'root_frame': 'world', 'frame_prefix': 'cell/', 'model': '',
             'anchor_models': 'all', 'publish_robot_description': False},
     }
-
-
-def test_without_ros_gz_bridge_the_package_to_install_is_named(monkeypatch):
-    monkeypatch.setenv('AMENT_PREFIX_PATH', '/nonexistent')
-    with pytest.raises(RuntimeError, match='ros_gz_bridge, which is not installed: sudo apt'):
-        nodes_of('gazebo.launch.py', sdf_file='a.sdf')
 
 
 def test_the_bridge_of_gazebo_and_the_node_get_files_that_match(tmp_path, monkeypatch):

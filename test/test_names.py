@@ -18,16 +18,11 @@ from sdf_pose_bridge.names import (
 )
 
 
-@pytest.mark.parametrize('name', ['world', '__model__', '__root__', '____', '__a__', '_____'])
-def test_name_is_reserved(name):
-    assert is_reserved(name)
-
-
-@pytest.mark.parametrize('name', [
-    '', '_', '__', '___', '__x_', '_x__', '__x', 'x__', 'World', 'worlds', 'a__b',
-])
-def test_name_is_not_reserved(name):
-    assert not is_reserved(name)
+@pytest.mark.parametrize(('names', 'reserved'), [
+    (['world', '__model__', '__root__', '____', '__a__', '_____'], True),
+    (['', '_', '__', '___', '__x_', '_x__', '__x', 'x__', 'World', 'worlds', 'a__b'], False)])
+def test_reserved_names(names, reserved):
+    assert [name for name in names if is_reserved(name) is not reserved] == []
 
 
 @pytest.mark.parametrize(('most', 'text'), [
@@ -36,12 +31,10 @@ def test_names_in_a_message(most, text):
     assert quoted_names(['a', 'b', 'c'], most) == text
 
 
-def test_name_in_a_scope():
-    assert scoped_name('robot::arm', 'hand') == 'robot::arm::hand'
-
-
-def test_name_in_a_world():
-    assert scoped_name('', 'robot') == 'robot'
+@pytest.mark.parametrize(('scope', 'name', 'scoped'), [
+    ('robot::arm', 'hand', 'robot::arm::hand'), ('', 'robot', 'robot')])
+def test_name_in_a_scope_or_in_a_world(scope, name, scoped):
+    assert scoped_name(scope, name) == scoped
 
 
 @pytest.mark.parametrize(('wanted', 'names', 'hint'), [

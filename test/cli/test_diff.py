@@ -41,15 +41,14 @@ def test_rounding_errors_are_printed_as_zero(diff):
     assert done.stdout.splitlines()[1].split()[-2:] == ['0', '0.1']
 
 
-def test_relative_to_a_frame_and_with_a_tolerance(diff):
-    assert diff('1 2 3', '1 2 4', '--relative-to', 'f').returncode == 0
-    assert diff('1 2 3', '1 2 4', '--tolerance', '2').returncode == 0
-    assert diff('1 2 3', '1 2 4', '--kinds', 'light').returncode == 0
-
-
-def test_relative_to_a_frame_by_its_name_in_tf(diff):
-    assert diff('1 2 3', '1 2 4', '--relative-to', 'm/l').returncode == 0
-    assert diff('1 2 3', '1 2 4', '--relative-to', 'm/k').returncode == 2
+@pytest.mark.parametrize(('old', 'new', 'arguments', 'code'), [
+    ('1 2 3', '1 2 4', '--relative-to f', 0), ('1 2 3', '1 2 4', '--tolerance 2', 0),
+    ('1 2 3', '1 2 4', '--kinds light', 0), ('1 2 3', '1 2 4', '--relative-to m/l', 0),
+    ('1 2 3', '1 2 4', '--relative-to m/k', 2), ('', '', '--relative-to g', 2),
+    ('relative_to="f"', 'relative_to="g"', '', 2)])
+def test_code_is_that_of_the_frames_that_are_compared_or_of_an_error(
+        diff, old, new, arguments, code):
+    assert diff(old, new, *arguments.split()).returncode == code
 
 
 def test_added_removed_and_renamed(diff):
@@ -77,9 +76,7 @@ def test_git_shows_what_a_commit_moved(files):
     assert shown.splitlines()[1].split() == ['f', 'frame', 'moved', '1', '0']
 
 
-def test_an_invalid_file_is_an_error(diff, run_main):
-    assert diff('relative_to="f"', 'relative_to="g"').returncode == 2
-    assert diff('', '', '--relative-to', 'g').returncode == 2
+def test_a_missing_file_is_an_error(run_main):
     assert run_main('diff', 'good.sdf', 'missing.sdf').returncode == 2
 
 

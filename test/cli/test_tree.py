@@ -69,21 +69,21 @@ def test_pose_is_in_the_parent(tree, options, pose):
     assert hand.split()[-6:] == pose
 
 
-def test_scope_has_elements_below_those_that_hold_them(tree):
-    lines = tree('--scope', '--kinds', 'model,frame,link')
-    assert names_in(lines) == ['__root__', 'arm', 'tip', 'attached', 'base', 'hand']
-    assert lines[2].startswith('  ├ tip ')
+@pytest.mark.parametrize(('options', 'names'), [
+    ('--scope --kinds model,frame,link', '__root__ arm tip attached base hand'),
+    ('--scope --kinds link', '__root__ base hand'),
+    ('--match ti?', 'base hand tip'), ('--match arm', 'base arm'),
+])
+def test_elements_are_below_those_that_hold_them(tree, options, names):
+    assert names_in(tree(*options.split())) == names.split()
 
 
 def test_scope_says_what_poses_are_relative_to(tree):
     lines = tree('--scope')
+    assert lines[2].startswith('  ├ tip ')
     assert lines[2].split()[2:6] == ['frame', '0.000', '0.000', '1.000']
     assert lines[3] == '  │   attached to arm::hand, relative to arm::base'
     assert lines[7] == '      revolute: arm::base -> arm::hand'
-
-
-def test_scope_of_some_kinds(tree):
-    assert names_in(tree('--scope', '--kinds', 'link')) == ['__root__', 'base', 'hand']
 
 
 def test_scope_has_worlds_that_are_empty(run_on):
@@ -96,11 +96,6 @@ def test_depth_hides_what_is_deeper_and_says_how_much(tree):
     lines = tree('--depth', '1')
     assert names_in(lines) == ['base', 'arm', 'hand', '1']
     assert lines[3].endswith('  1 more below')
-
-
-def test_match_leaves_frames_with_those_above_them(tree):
-    assert names_in(tree('--match', 'ti?')) == ['base', 'hand', 'tip']
-    assert names_in(tree('--match', 'arm')) == ['base', 'arm']
 
 
 def test_match_of_nothing_is_reported(run_main):

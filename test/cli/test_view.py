@@ -54,15 +54,14 @@ def test_a_python_of_apt_needs_an_environment(run_main, monkeypatch, tmp_path, i
     assert way in run_main('view', 'good.sdf', '-o', 'page.html').stderr
 
 
-def test_viser_that_is_started_in_another_way_is_an_error_of_one_line(refused, monkeypatch):
-    monkeypatch.setattr('viser.ViserServer', lambda *_, **__: None)
-    assert 'does not work as the releases' in refused('view', 'good.sdf', '-o', 'page.html')
-
-
-def test_missing_browser_is_an_error_of_one_line(refused, monkeypatch):
-    monkeypatch.setattr('shutil.which', lambda name, **_: None)
-    assert refused('view', 'good.sdf', '-o', 'page.png').startswith(
-        'sdf_pose view: cannot write page.png: a picture needs Chrome or Chromium;')
+@pytest.mark.parametrize(('name', 'output', 'reason'), [
+    ('viser.ViserServer', 'page.html', 'does not work as the releases'),
+    ('shutil.which', 'page.png',
+     'cannot write page.png: a picture needs Chrome or Chromium;')])
+def test_viser_or_a_browser_that_cannot_be_started_is_an_error_of_one_line(
+        refused, monkeypatch, name, output, reason):
+    monkeypatch.setattr(name, lambda *_, **__: None)
+    assert reason in refused('view', 'good.sdf', '-o', output)
 
 
 def test_page_has_a_title_and_needs_no_network(run_main, files):

@@ -100,19 +100,20 @@ def test_wrong_shapes_of_arrays_are_errors(function, shape):
         function(np.zeros(shape))
 
 
-@pytest.mark.parametrize(('matrix', 'rule'), [
-    ([[1, 0, 0], [0, 1, 0], [0, 0, math.nan]], 'not finite'),
-    ([[1, 0, 0], [0, 1, 0], [0, 0, math.inf]], 'not finite'),
-    ([[0, 0, 0], [0, 0, 0], [0, 0, 0]], r'not orthonormal: column 0 has norm 0\.0'),
-    ([[1, 0, 0], [0, 1.00002, 0], [0, 0, 1]], r'not orthonormal: column 1 has norm 1\.00002'),
-    ([[1, 0, 1e-2], [0, 1, 0], [0, 0, 1]], 'not orthonormal: column 2'),
-    ([[1, 2e-5, 0], [0, 1, 0], [0, 0, 1]], r'columns 0 and 1 have scalar product 2e-05'),
-    ([[1e200, 0, 0], [0, 1, 0], [0, 0, 1]], 'not orthonormal: column 0 has norm inf'),
-    ([[1, 0, 0], [0, 1, 0], [0, 0, -1]], 'determinant -1'),
-    ([[0, -1e-3, 0], [1e-3, 0, 0], [0, 0, 1e-3]], 'has the scale 0.001; divide it by that'),
-    ([[2, 0, 0], [0, 2, 0], [0, 0, 1]], 'column 0 has norm 2'),
+@pytest.mark.parametrize(('rows', 'rule'), [
+    ('1 0 0, 0 1 0, 0 0 nan', 'not finite'),
+    ('1 0 0, 0 1 0, 0 0 inf', 'not finite'),
+    ('0 0 0, 0 0 0, 0 0 0', r'not orthonormal: column 0 has norm 0\.0'),
+    ('1 0 0, 0 1.00002 0, 0 0 1', r'not orthonormal: column 1 has norm 1\.00002'),
+    ('1 0 1e-2, 0 1 0, 0 0 1', 'not orthonormal: column 2'),
+    ('1 2e-5 0, 0 1 0, 0 0 1', r'columns 0 and 1 have scalar product 2e-05'),
+    ('1e200 0 0, 0 1 0, 0 0 1', 'not orthonormal: column 0 has norm inf'),
+    ('1 0 0, 0 1 0, 0 0 -1', 'determinant -1'),
+    ('0 -1e-3 0, 1e-3 0 0, 0 0 1e-3', 'has the scale 0.001; divide it by that'),
+    ('2 0 0, 0 2 0, 0 0 1', 'column 0 has norm 2'),
 ])
-def test_matrices_must_be_rotations(matrix, rule):
+def test_matrices_must_be_rotations(rows, rule):
+    matrix = [[*map(float, row.split())] for row in rows.split(',')]
     with pytest.raises(RotationError, match=rule):
         quaternion_from_matrix(matrix)
     with pytest.raises(RotationError, match=f'row 2: .*{rule}'):

@@ -68,23 +68,22 @@ def test_a_prefix_that_runs_into_the_names_is_asked_about(prefix, asks):
     assert line_about_prefix(prefix).endswith('; did you mean "robot1/"?') == asks
 
 
-def test_a_flood_of_errors_ends_with_its_size():
-    errors = [ParsingError(f'fact {line}', Place('a.sdf', line)) for line in range(MOST_LINES + 1)]
-    lines = lines_from_error(LoadError(errors))
+@pytest.mark.parametrize(('lines', 'last'), [
+    (lines_from_error(LoadError([
+        ParsingError(f'fact {line}', Place('a.sdf', line)) for line in range(MOST_LINES + 1)])),
+     '1 more error; "sdf_pose check" shows all of them'),
+    (lines_from_error(SettingsError(['wrong'] * (MOST_LINES + 2))), '2 more errors'),
+    (lines_from_warnings([f'warning {number}' for number in range(MOST_LINES + 7)]),
+     '7 more warnings'),
+], ids=['errors', 'sentences about settings', 'warnings'])
+def test_a_flood_ends_with_its_size(lines, last):
     assert len(lines) == MOST_LINES + 1
-    assert lines[-1] == 'not shown: 1 more error; "sdf_pose check" shows all of them'
+    assert lines[-1] == f'not shown: {last}'
 
 
 def test_each_sentence_about_settings_has_its_line():
     error = SettingsError(['first', 'second'])
     assert lines_from_error(error) == ['first', 'second']
-
-
-def test_a_flood_of_sentences_about_settings_ends_with_its_size():
-    error = SettingsError(['wrong'] * (MOST_LINES + 2))
-    lines = lines_from_error(error)
-    assert len(lines) == MOST_LINES + 1
-    assert lines[-1] == 'not shown: 2 more errors'
 
 
 @pytest.mark.parametrize(('name', 'shown'), [
@@ -191,12 +190,6 @@ def test_a_flood_that_the_load_has_cut_has_no_exact_size():
 
 def test_few_warnings_are_all_written():
     assert lines_from_warnings(['one', 'two']) == ['one', 'two']
-
-
-def test_a_flood_of_warnings_ends_with_its_size():
-    lines = lines_from_warnings([f'warning {number}' for number in range(MOST_LINES + 7)])
-    assert len(lines) == MOST_LINES + 1
-    assert lines[-1] == 'not shown: 7 more warnings'
 
 
 def test_frames_that_tf_cannot_forget_are_named():

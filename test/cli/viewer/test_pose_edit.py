@@ -164,11 +164,14 @@ def test_pose_that_is_pasted_into_a_field_is_read_as_by_the_commands(edit, paste
     assert texts(edit)[2] == '3.0000'
 
 
-def test_quaternion_that_is_pasted_and_not_of_length_one_is_asked_about(edit):
+@pytest.mark.parametrize(('number', 'text', 'question'), [
+    (2, 'x: 0 y: 0 z: 45 w: 1', 'the quaternion 0 0 45 1 has the length 45'),
+    (5, '90', 'the angles 0 0 90 are radians; did you mean degrees?')])
+def test_numbers_in_doubt_are_asked_about(edit, number, text, question):
     show(edit)
-    edit._numbers[2].value = 'x: 0 y: 0 z: 45 w: 1'
+    edit._numbers[number].value = text
     show(edit)
-    assert 'the quaternion 0 0 45 1 has the length 45' in edit.html
+    assert question in edit.html
     assert [*edit.actions] == ['write anyway', 'cancel']
 
 
@@ -178,13 +181,6 @@ def test_refused_text_goes_when_another_frame_is_selected(edit):
     show(edit)
     show(edit, 'l')
     assert texts(edit)[1] == '0.0000'
-
-
-def test_typed_numbers_in_another_unit_are_asked_about(edit):
-    show(edit)
-    edit._numbers[5].value = '90'
-    show(edit)
-    assert 'the angles 0 0 90 are radians; did you mean degrees?' in edit.html
 
 
 def test_numbers_are_relative_to_the_reference(edit):
