@@ -2,13 +2,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """The command line as its users start it."""
 
+from functools import partial
 from importlib.util import find_spec
 import os
 from pathlib import Path
+import subprocess
 import sys
 
+from deadline import DEADLINE_S
 from folders import ROOT
 import pytest
+
+completed = partial(
+    subprocess.run, capture_output=True, text=True, timeout=DEADLINE_S, check=False)
+"""Runs a command to its end: ``completed(command, **options)`` returns what it has printed."""
 
 AS_MODULE = [sys.executable, '-m', 'sdf_pose_bridge']
 

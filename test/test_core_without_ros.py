@@ -6,10 +6,9 @@ import importlib.util
 import json
 from pathlib import Path
 import re
-import subprocess
 import sys
 
-from deadline import DEADLINE_S
+from command_line import completed
 from folders import ROOT
 import pytest
 
@@ -47,9 +46,7 @@ def bare_folders(tmp_path_factory):
 def run_bare(folders, program):
     """Run a program in an interpreter that finds the standard library and some folders only."""
     start = f'import re, sys\nsys.path[:0] = {folders!r}\npattern = {ROS_NAME.pattern!r}\n'
-    done = subprocess.run(
-        [sys.executable, '-I', '-S', '-B', '-c', start + program],
-        capture_output=True, text=True, env={}, timeout=DEADLINE_S, check=False)
+    done = completed([sys.executable, '-I', '-S', '-B', '-c', start + program], env={})
     assert done.returncode == 0, done.stderr
     return done.stdout
 

@@ -5,9 +5,9 @@
 import re
 import shlex
 import shutil
-import subprocess
 import sys
 
+from command_line import completed
 from folders import ROOT
 import pytest
 
@@ -142,8 +142,7 @@ def test_snippets_of_python(page, folder):
         if each.name == page and lines[0].startswith('import ')]
     assert snippets
     for snippet in snippets:
-        done = subprocess.run(
-            [sys.executable, '-c', snippet], capture_output=True, text=True, check=False)
+        done = completed([sys.executable, '-c', snippet])
         assert done.returncode == 0, done.stderr
 
 

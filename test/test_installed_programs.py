@@ -9,7 +9,7 @@ import subprocess
 import sys
 import sysconfig
 
-from command_line import executable_of_workspace, skip_without
+from command_line import completed, executable_of_workspace, skip_without
 from deadline import DEADLINE_S
 from folders import ROOT
 import mesh_texts
@@ -58,20 +58,18 @@ def test_meshes_are_read_however_the_program_is_started(started, tmp_path):
     (tmp_path / 'mesh.sdf').write_text(MESH)
     (tmp_path / 'a.stl').write_text(mesh_texts.stl())
     command, path = started
-    done = subprocess.run(
-        [*command, 'view', 'mesh.sdf', '-o', 'page.html'], cwd=tmp_path, text=True,
-        env={**os.environ, 'PYTHONPATH': path}, capture_output=True, check=False,
-        timeout=DEADLINE_S)
+    done = completed(
+        [*command, 'view', 'mesh.sdf', '-o', 'page.html'], cwd=tmp_path,
+        env={**os.environ, 'PYTHONPATH': path})
     assert (done.returncode, done.stdout, done.stderr) == (0, '', '')
 
 
 @pytest.mark.parametrize('name', ['bridge', 'sdf_pose'])
 def test_executables_can_be_imported(name, tmp_path):
     (executable,), path = program_of_workspace(name)
-    done = subprocess.run(
+    done = completed(
         [sys.executable, '-c', f'import runpy; runpy.run_path({executable!r}, run_name="other")'],
-        env={**os.environ, 'PYTHONPATH': path}, cwd=tmp_path, text=True, capture_output=True,
-        timeout=DEADLINE_S, check=False)
+        env={**os.environ, 'PYTHONPATH': path}, cwd=tmp_path)
     assert (done.returncode, done.stdout, done.stderr) == (0, '', '')
 
 

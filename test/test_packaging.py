@@ -9,12 +9,10 @@ import json
 import os
 from pathlib import Path
 import re
-import subprocess
 import sys
 import xml.etree.ElementTree as ET
 
-from command_line import skip_without
-from deadline import DEADLINE_S
+from command_line import completed, skip_without
 from folders import ROOT
 import pytest
 
@@ -40,9 +38,9 @@ def package_xml(package):
 
 def run_setup(*options):
     skip_without('setuptools')
-    return subprocess.run(
+    return completed(
         [sys.executable, 'setup.py', '--quiet', *options], cwd=ROOT, check=True,
-        capture_output=True, text=True, env={**os.environ, 'PYTHONWARNINGS': 'ignore'})
+        env={**os.environ, 'PYTHONWARNINGS': 'ignore'})
 
 
 def service_files():
@@ -63,9 +61,7 @@ def arguments_of_setup(*command):
     code = (
         'import json, runpy, setuptools; found = {}; setuptools.setup = found.update; '
         'runpy.run_path("setup.py"); found.pop("cmdclass"); print(json.dumps(found))')
-    result = subprocess.run(
-        [sys.executable, '-c', code, *command], cwd=ROOT, check=True, capture_output=True,
-        text=True)
+    result = completed([sys.executable, '-c', code, *command], cwd=ROOT, check=True)
     return json.loads(result.stdout)
 
 
@@ -236,9 +232,9 @@ def test_tests_are_collected_where_modules_are_missing():
         f'import pytest, sys; sys.modules.update(dict.fromkeys({missing})); '
         'sys.exit(pytest.main(["--collect-only", "--quiet", "--assert", "plain", '
         '"-p", "no:cacheprovider"]))')
-    done = subprocess.run(
-        [sys.executable, '-c', code], cwd=ROOT, capture_output=True, text=True, check=False,
-        timeout=DEADLINE_S, env={**os.environ, 'PYTEST_DISABLE_PLUGIN_AUTOLOAD': '1'})
+    done = completed(
+        [sys.executable, '-c', code], cwd=ROOT,
+        env={**os.environ, 'PYTEST_DISABLE_PLUGIN_AUTOLOAD': '1'})
     assert done.returncode == 0, done.stdout
     assert 'needs hypothesis' in done.stdout
     assert 'needs mpmath' in done.stdout

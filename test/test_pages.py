@@ -6,11 +6,11 @@ from importlib.util import find_spec
 import os
 import re
 import shutil
-import subprocess
 import sys
 from urllib.parse import unquote, urlsplit
 import xml.etree.ElementTree as ET
 
+from command_line import completed
 from folders import ROOT
 import pytest
 
@@ -25,10 +25,9 @@ README_OF_ROSDOC2 = f'.. include:: {ROOT}/README.md\n   :parser: myst_parser.sph
 
 
 def build(source, target, *options, **environment):
-    result = subprocess.run(
+    result = completed(
         [sys.executable, '-m', 'sphinx', '--fail-on-warning', '--keep-going', '--quiet', *options,
-         str(source), str(target)],
-        env={**os.environ, **environment}, cwd='/', capture_output=True, text=True, check=False)
+         str(source), str(target)], env={**os.environ, **environment}, cwd='/')
     assert (result.returncode, result.stderr) == (0, '')
     return target
 

@@ -4,10 +4,10 @@
 
 from pathlib import Path
 import shutil
-import subprocess
 import sys
 import xml.etree.ElementTree as ET
 
+from command_line import completed
 from folders import ROOT
 import pytest
 
@@ -23,9 +23,7 @@ LAST = '0.9.0 (2026-01-01)\n------------------\n* First.\n'
 
 def git_in(folder):
     def run(*arguments):
-        return subprocess.run(
-            ['git', *arguments], cwd=folder, capture_output=True, text=True, check=True,
-        ).stdout.strip()
+        return completed(['git', *arguments], cwd=folder, check=True).stdout.strip()
     return run
 
 
@@ -65,9 +63,7 @@ def release(git, tmp_path):
         pytest.skip('needs "git subtree"')
 
     def run(version):
-        return subprocess.run(
-            [sys.executable, 'release/make_release.py', version], cwd=tmp_path,
-            capture_output=True, text=True, check=False)
+        return completed([sys.executable, 'release/make_release.py', version], cwd=tmp_path)
     return run
 
 

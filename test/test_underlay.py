@@ -10,7 +10,7 @@ import shutil
 import subprocess
 import sys
 
-from deadline import DEADLINE_S
+from command_line import completed
 from folders import ROOT
 import pytest
 
@@ -62,9 +62,9 @@ def command(folder, name, text):
 def make_underlay(checkout, **environment):
     environment = {
         'PATH': os.environ['PATH'], 'SDF_POSE_BRIDGE_ROS_PREFIX': '', **environment}
-    return subprocess.run(
-        ['bash', str(checkout / 'underlay/make_underlay')], env=environment, text=True,
-        capture_output=True, stdin=subprocess.DEVNULL, timeout=DEADLINE_S, check=False)
+    return completed(
+        ['bash', str(checkout / 'underlay/make_underlay')], env=environment,
+        stdin=subprocess.DEVNULL)
 
 
 def assert_refused_with(result, *words):
@@ -77,9 +77,8 @@ def assert_refused_with(result, *words):
 
 
 def shell(script, **environment):
-    return subprocess.run(
-        ['bash', '-c', script], env={**os.environ, **environment}, text=True,
-        capture_output=True, stdin=subprocess.DEVNULL, timeout=DEADLINE_S, check=False)
+    return completed(
+        ['bash', '-c', script], env={**os.environ, **environment}, stdin=subprocess.DEVNULL)
 
 
 @pytest.mark.parametrize(('program', 'environment', 'words'), [

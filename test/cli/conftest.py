@@ -14,7 +14,7 @@ import subprocess
 import termios
 from types import SimpleNamespace
 
-from command_line import COMMAND, ENVIRONMENT
+from command_line import COMMAND, completed, ENVIRONMENT
 from deadline import DEADLINE_S
 import pytest
 
@@ -52,10 +52,9 @@ def options(files, monkeypatch):
 def sdf_pose_in_shell(files):
     """Runs the installed one there from a shell: ``sdf_pose_in_shell('arguments > output')``."""
     def run(command, before='', **environment):
-        return subprocess.run(
+        return completed(
             f'{before} {shlex.join(map(str, COMMAND))} {command}', shell=True, cwd=files,
-            env={**ENVIRONMENT, **environment}, capture_output=True, text=True, timeout=DEADLINE_S,
-            check=False)
+            env={**ENVIRONMENT, **environment})
     return run
 
 

@@ -4,9 +4,9 @@
 
 import os
 import shutil
-import subprocess
 import sys
 
+from command_line import completed
 from folders import ROOT
 import pytest
 
@@ -60,10 +60,10 @@ def test_added_removed_and_renamed(diff):
 @pytest.mark.skipif(shutil.which('git') is None, reason='needs git')
 def test_git_shows_what_a_commit_moved(files):
     def git(*arguments):
-        return subprocess.run(
+        return completed(
             ['git', '-c', 'user.name=a', '-c', 'user.email=b', *arguments], cwd=files,
             env={**os.environ, 'PYTHONPATH': str(ROOT), 'GIT_CONFIG_GLOBAL': os.devnull},
-            capture_output=True, text=True, check=True).stdout
+            check=True).stdout
 
     git('init', '-q')
     for pose in ('1 2 3', '1 2 4'):

@@ -7,7 +7,7 @@ import subprocess
 import sys
 import xml.etree.ElementTree as ET
 
-from command_line import COMMAND, ENVIRONMENT
+from command_line import COMMAND, completed, ENVIRONMENT
 from deadline import DEADLINE_S
 from folders import ROOT
 import pytest
@@ -74,9 +74,9 @@ sys.exit(main.main())
 ])
 @pytest.mark.usefixtures('large_file')
 def test_a_file_that_needs_too_much_is_one_sentence(files, limit, message):
-    done = subprocess.run(
+    done = completed(
         [sys.executable, '-c', LIMITED.format(limit), 'tree', 'large.sdf'], cwd=files,
-        env=ENVIRONMENT, capture_output=True, text=True, timeout=DEADLINE_S, check=False)
+        env=ENVIRONMENT)
     assert done.returncode == 1
     assert re.fullmatch(f'{message}\n', done.stderr)
 

@@ -5,11 +5,11 @@
 from importlib.metadata import version
 import re
 import socket
-import subprocess
 import sys
 from urllib.parse import urlsplit
 import webbrowser
 
+from command_line import completed
 from folders import ROOT
 import pytest
 
@@ -111,7 +111,5 @@ def test_libraries_are_imported_only_by_the_command(files):
     program = ('import sys; from sdf_pose_bridge.cli.main import main\n'
                'main(["tree", "good.sdf"])\n'
                'sys.exit(str({"viser", "trimesh", "webbrowser"} & set(sys.modules)))')
-    done = subprocess.run(
-        [sys.executable, '-c', program], cwd=files, env={'PYTHONPATH': str(ROOT)},
-        capture_output=True, text=True, check=False)
+    done = completed([sys.executable, '-c', program], cwd=files, env={'PYTHONPATH': str(ROOT)})
     assert done.stderr == 'set()\n'

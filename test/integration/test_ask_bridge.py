@@ -2,10 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The example of clients: it shows topics and poses, and calls every service."""
 
-import subprocess
 import sys
 
-from deadline import DEADLINE_S
+from command_line import completed
 from folders import EXAMPLES
 import pytest
 
@@ -16,9 +15,7 @@ def ask(start_shared_bridge):
     start_shared_bridge(sdf_file=EXAMPLES / 'work_cell.sdf').wait_until_started()
 
     def ask(*arguments):
-        return subprocess.run(
-            [sys.executable, EXAMPLES / 'ask_bridge.py', *arguments], capture_output=True,
-            text=True, timeout=DEADLINE_S, check=False)
+        return completed([sys.executable, EXAMPLES / 'ask_bridge.py', *arguments])
 
     return ask
 

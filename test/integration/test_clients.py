@@ -4,9 +4,9 @@
 
 import shutil
 import signal
-import subprocess
 import sys
 
+from command_line import completed
 from folders import EXAMPLES
 import pytest
 
@@ -24,8 +24,7 @@ def cpp_client(tmp_path_factory):
     build = tmp_path_factory.mktemp('cpp_client')
     source = ['-S', EXAMPLES / 'cpp_client', '-DCMAKE_COMPILE_WARNING_AS_ERROR=ON']
     for options in ([*source, '-B', build], ['--build', build]):
-        done = subprocess.run(
-            ['cmake', *options], capture_output=True, text=True, timeout=600, check=False)
+        done = completed(['cmake', *options], timeout=600)
         assert done.returncode == 0, done.stdout + done.stderr
     return [build / 'client']
 

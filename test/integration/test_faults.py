@@ -24,7 +24,7 @@ from changes import (
     wait_for_x,
     world,
 )
-from command_line import executable_of_workspace
+from command_line import completed, executable_of_workspace
 from deadline import DEADLINE_S
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import Point, Pose, PoseStamped
@@ -71,9 +71,7 @@ def small_disk(tmp_path):
     """A folder on a disk with room for one page, in 4096 bytes."""
     folder = tmp_path / 'small'
     folder.mkdir()
-    if subprocess.run(
-            ['mount', '-t', 'tmpfs', '-o', 'size=4k', 'none', folder], capture_output=True,
-            check=False).returncode:
+    if completed(['mount', '-t', 'tmpfs', '-o', 'size=4k', 'none', folder]).returncode:
         pytest.skip('this machine does not permit to mount a file system')
     yield folder
     subprocess.run(['umount', '--lazy', folder], check=True)

@@ -11,7 +11,7 @@ import sys
 from ament_index_python.packages import get_package_share_directory
 from bridge_process import STARTED
 from changes import replace, world
-from command_line import executable_of_workspace
+from command_line import completed, executable_of_workspace
 from deadline import wait_until
 import pytest
 from ros_domain import needs_fast_dds
@@ -62,8 +62,7 @@ rclpy.spin(node)
 
 
 def ip(*arguments):
-    return subprocess.run(
-        ['ip', *arguments], check=True, capture_output=True, text=True).stdout
+    return completed(['ip', *arguments], check=True).stdout
 
 
 def counted_by_kernel(host):

@@ -3,10 +3,9 @@
 """What the README shows is what is printed, as far as that is the same on every machine."""
 
 import re
-import subprocess
 import sys
 
-from deadline import DEADLINE_S
+from command_line import completed
 from folders import ROOT
 import pytest
 
@@ -61,9 +60,7 @@ def listener(bridge, start_shared_listener):
 
 
 def test_the_demonstration():
-    done = subprocess.run(
-        [sys.executable, ROOT / 'examples/demo.py'], capture_output=True, text=True,
-        timeout=DEADLINE_S, check=False)
+    done = completed([sys.executable, ROOT / 'examples/demo.py'])
     assert done.returncode == 0, done.stderr
     first = (
         '49 transforms on /tf_static, 49 on /sdf_pose_bridge/transforms, '

@@ -2,10 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The executable without ROS around it: what is missing is said in one sentence."""
 
-import subprocess
 import sys
 
-from deadline import DEADLINE_S
+from command_line import completed
 from folders import ROOT
 import pytest
 
@@ -18,9 +17,7 @@ def run_bridge_without(module):
         f'import sys; sys.modules[{module!r}] = None\n'
         'from sdf_pose_bridge.ros.bridge import main\n'
         'sys.exit(main(["bridge"]))')
-    return subprocess.run(
-        [sys.executable, '-c', program], cwd=ROOT, capture_output=True, text=True,
-        timeout=DEADLINE_S, check=False)
+    return completed([sys.executable, '-c', program], cwd=ROOT)
 
 
 def test_without_the_interfaces_it_says_what_to_type():
@@ -78,7 +75,5 @@ def test_what_can_wait_for_the_first_message_is_not_imported_before():
         'StampedRecords([tree.parent_ids, tree.frame_ids], tree.transforms).tf_message()\n'
         'imported = set(sys.modules) - imported_by_numpy\n'
         f'print([name for name in {WAITS_FOR_THE_FIRST_MESSAGE} if name in imported])')
-    result = subprocess.run(
-        [sys.executable, '-c', program], cwd=ROOT, capture_output=True, text=True,
-        timeout=DEADLINE_S, check=True)
+    result = completed([sys.executable, '-c', program], cwd=ROOT, check=True)
     assert result.stdout.strip() == '[]'

@@ -2,10 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """How a process ends that cannot go on."""
 
-import subprocess
 import sys
 
-from deadline import DEADLINE_S
+from command_line import completed
 import pytest
 
 PROGRAM = """
@@ -28,9 +27,7 @@ NO_MEMORY = 'sdf_pose_bridge: there is not enough memory, so the node ends\n'
 
 
 def ended(code, error):
-    return subprocess.run(
-        [sys.executable, '-c', PROGRAM.format(code=code, error=error)],
-        capture_output=True, text=True, check=False, timeout=DEADLINE_S)
+    return completed([sys.executable, '-c', PROGRAM.format(code=code, error=error)])
 
 
 @pytest.mark.parametrize('code', [IN_THREAD, 'Fails()', 'end_without_memory()'])

@@ -7,10 +7,9 @@ import os
 from pathlib import Path
 import re
 import shutil
-import subprocess
 import sys
 
-from deadline import DEADLINE_S
+from command_line import completed
 from folders import ROOT
 import pytest
 from sdf_texts import element, LINK, LINK_CHILDREN, link_with, model_file, names_of, world_file
@@ -44,9 +43,8 @@ def test_misspelt_definition_is_an_error_when_the_grammar_is_imported(tmp_path):
     text = specification.read_text()
     assert text.count("'audio': 'device!'") == 1
     specification.write_text(text.replace("'device!'", "'device!:strng'"))
-    done = subprocess.run(
+    done = completed(
         [sys.executable, '-c', f'import {PACKAGE.name}.sdformat.grammar'], cwd=tmp_path,
-        capture_output=True, text=True, check=False,
         env={**os.environ, 'PYTHONPATH': str(tmp_path)})
     assert '"strng" in the definition "device!:strng" is not a type of values' in done.stderr
 
@@ -207,9 +205,8 @@ print(json.dumps({
 
 def python_with_beam(folder, *arguments):
     """Run Python where the package is the copy in a folder that knows beams."""
-    done = subprocess.run(
-        [sys.executable, *arguments], cwd=folder, capture_output=True, text=True, check=False,
-        env={**os.environ, 'PYTHONPATH': str(folder)}, timeout=DEADLINE_S)
+    done = completed(
+        [sys.executable, *arguments], cwd=folder, env={**os.environ, 'PYTHONPATH': str(folder)})
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
 
