@@ -23,7 +23,7 @@ ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / 'build' / 'differential'
 
 
-def main() -> int:
+def main():
     """Run the comparison that the command line asks for."""
     parser = argparse.ArgumentParser(
         prog='differential', description='Compare the package with libsdformat on random scenes.')
@@ -51,7 +51,7 @@ def main() -> int:
     return 1 if tally.differences else 0
 
 
-def report(tally: Tally, seconds: float) -> None:
+def report(tally, seconds):
     """Print what was compared."""
     traits = ', '.join(f'{count} with {trait}' for trait, count in sorted(tally.traits.items()))
     print(f'{tally.scenes} scenes ({len(tally.distinct)} distinct'
@@ -63,7 +63,7 @@ def report(tally: Tally, seconds: float) -> None:
     print(f'{len(tally.differences)} differences')
 
 
-def write_differences(tally: Tally, folder: Path) -> None:
+def write_differences(tally, folder):
     """Write all scenes that differ."""
     shutil.rmtree(folder, ignore_errors=True)
     for name, scene, difference in tally.differences:

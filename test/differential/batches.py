@@ -5,14 +5,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from random import Random
 import tempfile
 
 from differential.comparison import Difference, difference_between, is_comparable, own_answer
-from differential.reference import Reference
 from differential.scene_builder import random_scene, SceneFiles
 from differential.scene_setting import with_pose_set
 
@@ -37,7 +35,7 @@ class Tally:
     """Name of the scene, the scene and what differs."""
 
 
-def compare_scenes(reference: Reference, count: int, first_seed: int) -> Iterator[Tally]:
+def compare_scenes(reference, count, first_seed):
     """
     Compare the package with libsdformat on random scenes.
 
@@ -58,15 +56,13 @@ def compare_scenes(reference: Reference, count: int, first_seed: int) -> Iterato
         yield tally
 
 
-def drawn_scene(dice: Random) -> SceneFiles:
+def drawn_scene(dice):
     """Draw a scene; in one of ten, a pose is set."""
     scene = random_scene(dice)
     return with_pose_set(scene, dice) if dice.randrange(10) == 0 else scene
 
 
-def add_batch(
-    tally: Tally, scenes: dict[str, SceneFiles], folder: Path, reference: Reference,
-) -> None:
+def add_batch(tally, scenes, folder, reference):
     """Have both sides resolve scenes at the same time, compare, and add to the tally."""
     paths = [scene.write(folder, name) for name, scene in scenes.items()]
     process = reference.start(paths, folder)

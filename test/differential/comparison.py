@@ -6,11 +6,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 import math
-from pathlib import Path
 
-from differential.reference import Answer, AxisValues, CRASH, EXCEPTION, JointValues, PoseValues
+from differential.reference import Answer, AxisValues, CRASH, EXCEPTION, JointValues
 from sdf_pose_bridge import load, SdfError
-from sdf_pose_bridge.scene.scene import Joint, Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.joints import AXIS_TAGS
 
@@ -32,7 +30,7 @@ class Difference:
     """What differs, in words."""
 
 
-def own_answer(file: Path, resource_path: Path) -> Answer:
+def own_answer(file, resource_path):
     """
     Resolve a file with the package.
 
@@ -59,9 +57,9 @@ def own_answer(file: Path, resource_path: Path) -> Answer:
     return Answer(True, (), '', poses, joints)
 
 
-def own_joint(scene: Scene, joint: Joint) -> JointValues:
+def own_joint(scene, joint):
     """Return a joint in the terms of the reference."""
-    def body(frame: int) -> str:
+    def body(frame):
         element = int(scene.bodies[frame])
         is_root = scene.kinds[element] in (Kind.WORLD, Kind.ROOT)
         return 'world' if is_root else scene.names[element]
@@ -75,9 +73,7 @@ def own_joint(scene: Scene, joint: Joint) -> JointValues:
         joint.type, body(joint.parent), body(joint.child), joint.screw_pitch_m, axes)
 
 
-def difference_between(
-    own: Answer, reference: Answer, traits: frozenset[str] = frozenset(),
-) -> Difference | None:
+def difference_between(own, reference, traits=frozenset()):
     """
     Find the first thing on which the two sides disagree.
 
@@ -117,7 +113,7 @@ def difference_between(
     return None
 
 
-def is_comparable(reference: Answer) -> bool:
+def is_comparable(reference):
     """
     Tell whether libsdformat has an answer, and one that the package wants to have.
 
@@ -129,7 +125,7 @@ def is_comparable(reference: Answer) -> bool:
         and reference.message.startswith('A link named'))
 
 
-def joint_difference(own: JointValues | None, expected: JointValues, tolerance: float) -> str:
+def joint_difference(own, expected, tolerance):
     """Say what differs in a joint, or nothing."""
     if own is None:
         return '' if expected.parent == expected.child else 'it is not in the scene'
@@ -148,13 +144,13 @@ def joint_difference(own: JointValues | None, expected: JointValues, tolerance: 
     return ''
 
 
-def _with_floats(values: tuple[object, ...] | None) -> tuple[object, ...] | None:
+def _with_floats(values):
     # To add zero leaves no negative zeros.
     return values and tuple(
         value + 0.0 if isinstance(value, (int, float)) else value for value in values)
 
 
-def is_same_pose(expected: PoseValues, got: PoseValues, tolerance: float) -> bool:
+def is_same_pose(expected, got, tolerance):
     """Compare positions by distance, and orientations by the angle between them."""
     scale = max(1.0, math.hypot(*expected[:3]))
     if math.dist(expected[:3], got[:3]) > tolerance * scale:
@@ -162,7 +158,7 @@ def is_same_pose(expected: PoseValues, got: PoseValues, tolerance: float) -> boo
     return angle_between(expected[3:], got[3:]) <= tolerance
 
 
-def angle_between(first: PoseValues, second: PoseValues) -> float:
+def angle_between(first, second):
     """Return the angle in radians between two rotations given by quaternions of any length."""
     lengths = math.hypot(*first), math.hypot(*second)
     if not all(lengths):

@@ -4,13 +4,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 import json
 from pathlib import Path
 import shutil
 import subprocess
-from typing import Any, NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 SOURCE = Path(__file__).with_name('print_poses.cpp')
 RELEASES = ('sdformat14', 'sdformat15', 'sdformat')
@@ -79,7 +78,7 @@ class Reference:
     version: str
     """Of libsdformat, such as ``14.9.0``."""
 
-    def answers(self, files: Iterable[Path], resource_path: Path) -> list[Answer]:
+    def answers(self, files, resource_path):
         """
         Resolve files.
 
@@ -90,7 +89,7 @@ class Reference:
         process = self.start(files, resource_path)
         return self.finish(process, files, resource_path)
 
-    def start(self, files: Iterable[Path], resource_path: Path) -> subprocess.Popen[str]:
+    def start(self, files, resource_path):
         """Start resolving files in a process of their own; see :meth:`finish`."""
         # Answers go to a file: a pipe that nobody reads yet would fill up and stop the program.
         output = (resource_path / 'answers.jsonl').open('w+', encoding='utf-8')
@@ -103,8 +102,7 @@ class Reference:
         output.close()
         return process
 
-    def finish(self, process: subprocess.Popen[str], files: Iterable[Path],
-               resource_path: Path) -> list[Answer]:
+    def finish(self, process, files, resource_path):
         """Wait for the answers of a process that :meth:`start` made."""
         process.wait()
         text = (resource_path / 'answers.jsonl').read_text(encoding='utf-8', errors='replace')
@@ -117,7 +115,7 @@ class Reference:
         return answers
 
 
-def answer_from_json(line: str) -> Answer:
+def answer_from_json(line):
     """Read one line of the program's output."""
     fields = json.loads(line)
     errors = fields['errors']
@@ -132,7 +130,7 @@ def answer_from_json(line: str) -> Answer:
     )
 
 
-def joint_from_json(fields: dict[str, Any]) -> JointValues:
+def joint_from_json(fields):
     """Read one joint of the program's output."""
     axes = tuple(
         axis and AxisValues(
@@ -142,7 +140,7 @@ def joint_from_json(fields: dict[str, Any]) -> JointValues:
         JOINT_TYPES[fields['type']], fields['parent'], fields['child'], fields['pitch'], axes)
 
 
-def built_reference(folder: Path) -> Reference:
+def built_reference(folder):
     """
     Compile the program, unless that was done since it last changed.
 

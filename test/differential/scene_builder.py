@@ -10,8 +10,6 @@ backward. Some scenes are changed at random afterwards.
 
 from __future__ import annotations
 
-from pathlib import Path
-from random import Random
 from typing import NamedTuple
 from xml.etree import ElementTree
 
@@ -39,7 +37,7 @@ class SceneFiles(NamedTuple):
     traits: frozenset[str] = frozenset()
     """Parts of SDFormat that are in it."""
 
-    def write(self, folder: Path, name: str) -> Path:
+    def write(self, folder, name):
         """
         Write the files.
 
@@ -65,12 +63,12 @@ class Built(NamedTuple):
     links: list[str]
     """The links that can be named inside it."""
 
-    def seen_outside(self) -> Built:
+    def seen_outside(self):
         """Return what can be named in the scope that it is in."""
         inner, links = ([f'{self.name}::{each}' for each in names] for names in self[2:])
         return self._replace(inner=[self.name, *inner], links=links)
 
-    def seen_merged(self) -> Built:
+    def seen_merged(self):
         """Return what can be named in the scope that it is merged into."""
         return self._replace(inner=self.inner[1:])
 
@@ -78,30 +76,30 @@ class Built(NamedTuple):
 class SceneBuilder:
     """Draws one scene; holds what its models share."""
 
-    def __init__(self, dice: Random) -> None:
+    def __init__(self, dice):
         self.dice = dice
         self.files: dict[str, str] = {}
         self.traits: set[str] = set()
         self.deepest = 12 if self.chance(12) else 3
         self.is_changed = self.chance(3)
 
-    def chance(self, one_in: int) -> bool:
+    def chance(self, one_in):
         """Draw whether something happens."""
         return self.dice.randrange(one_in) == 0
 
-    def add(self, parent: Element, child: Element | None) -> None:
+    def add(self, parent, child):
         """Put a child anywhere into an element."""
         if child is not None:
             parent.insert(self.dice.randint(0, len(parent)), child)
 
-    def pose(self, placed: list[str]) -> Element | None:
+    def pose(self, placed):
         """Draw a pose, relative to a frame or to the default."""
         is_default = not placed or self.chance(3)
         return new_pose(self.dice, '' if is_default else self.dice.choice(placed))
 
     # Files ----------------------------------------------------------------------------------
 
-    def file_text(self, content: list[Element]) -> str:
+    def file_text(self, content):
         """Write elements as a file, with a version drawn for it."""
         version = self.dice.choice(VERSIONS)
         root = Element('sdf', version=version)
@@ -122,7 +120,7 @@ class SceneBuilder:
             return with_oddities(self.dice, text)
         return text
 
-    def included_uri(self, content: Element) -> str:
+    def included_uri(self, content):
         """Write a file, or a folder with a manifest, to be included; return its URI."""
         path = f'part_{len(self.files)}'
         if content.tag == 'robot':
@@ -143,7 +141,7 @@ class SceneBuilder:
 
     # Models ---------------------------------------------------------------------------------
 
-    def include(self, taken: set[str], depth: int, *, merged: bool = False) -> Built:
+    def include(self, taken, depth, *, merged=False):
         """Draw a file and the element that includes it; see :meth:`model`."""
         self.traits.add('merge' if merged else 'include')
         if self.chance(3):
@@ -170,9 +168,7 @@ class SceneBuilder:
                 add_param(self.dice, params, built.inner, built.links)
         return built
 
-    def model(
-        self, taken: set[str], depth: int, *, top: bool = False, merged: bool = False,
-    ) -> Built:
+    def model(self, taken, depth, *, top=False, merged=False):
         """
         Draw a model.
 
@@ -206,11 +202,11 @@ class SceneBuilder:
             self.add(element, new_pose(dice))
         return built
 
-    def shuffled(self, values: list[str]) -> list[str]:
+    def shuffled(self, values):
         """Draw an order."""
         return self.dice.sample(values, len(values))
 
-    def add_part(self, built: Built, part: str, names: set[str], depth: int) -> None:
+    def add_part(self, built, part, names, depth):
         """Add a link, frame, joint, or model that is nested, included or merged, to a model."""
         if part in ('model', 'include', 'merge'):
             if part == 'model':
@@ -239,28 +235,28 @@ class SceneBuilder:
         if part == 'link':
             built.links.append(name)
 
-    def place(self, built: Built, placed: list[str]) -> None:
+    def place(self, built, placed):
         """Draw the pose of a nested, included or merged model."""
         pose = self.pose(placed)
         self.add(built.element, pose)
         if built.element.tag == 'include' and pose is not None and self.chance(4):
             sub_element(built.element, 'placement_frame', self.dice.choice(built.inner))
 
-    def frame(self, name: str, placed: list[str]) -> Element:
+    def frame(self, name, placed):
         """Draw an explicit frame without its pose."""
         element = Element('frame', name=name)
         if not self.chance(3):
             element.set('attached_to', self.dice.choice(placed))
         return element
 
-    def joint(self, name: str, built: Built) -> Element:
+    def joint(self, name, built):
         """Draw a joint without its pose; its ends are seldom on one link."""
         child = self.dice.choice(built.links if self.chance(2) else built.inner[1:])
         others = [link for link in built.links if link != child]
         parent = self.dice.choice(others) if others and not self.chance(3) else 'world'
         return joint_body(self.dice, name, parent, child)
 
-    def old_model(self, name: str) -> Element:
+    def old_model(self, name):
         """Draw a model whose links are named by scopes, which old versions use for nesting."""
         dice = self.dice
         model = Element('model', name=name)
@@ -283,7 +279,7 @@ class SceneBuilder:
 
     # Worlds ---------------------------------------------------------------------------------
 
-    def world(self, name: str) -> Element:
+    def world(self, name):
         """Draw a world with models, frames, joints, lights and actors."""
         dice = self.dice
         world = Element('world', name=name)
@@ -300,7 +296,7 @@ class SceneBuilder:
             self.add_part(built, 'joint', names, 1)
         return world
 
-    def light_or_actor(self, tag: str, name: str, placed: list[str]) -> Element:
+    def light_or_actor(self, tag, name, placed):
         """Draw a light or an actor, either of which may be in a file of its own."""
         element = Element(tag, name=name)
         if tag == 'light':
@@ -316,7 +312,7 @@ class SceneBuilder:
         return element
 
 
-def random_scene(dice: Random) -> SceneFiles:
+def random_scene(dice):
     """Draw a scene with every file that it needs."""
     builder = SceneBuilder(dice)
     if builder.chance(4):

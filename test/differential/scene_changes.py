@@ -9,7 +9,6 @@ Which changed scenes are valid is libsdformat's affair.
 from __future__ import annotations
 
 from copy import deepcopy
-from random import Random
 from xml.etree import ElementTree
 
 from differential.scene_text import new_pose, sub_element
@@ -27,7 +26,7 @@ ATTRIBUTES = (
     ('rotation_format', ('quat_xyzw', 'euler_rpy', 'rpy')), ('merge', ('true', 'false', 'maybe')))
 
 
-def add_param(dice: Random, params: Element, inner: list[str], links: list[str]) -> None:
+def add_param(dice, params, inner, links):
     """
     Add a parameter of an include.
 
@@ -53,7 +52,7 @@ def add_param(dice: Random, params: Element, inner: list[str], links: list[str])
         element.append(pose)
 
 
-def change_at_random(dice: Random, root: Element) -> None:
+def change_at_random(dice, root):
     """Remove, copy, move or change one or two elements."""
     for _ in range(dice.randint(1, 2)):
         pairs = [(parent, child) for parent in root.iter() for child in parent]

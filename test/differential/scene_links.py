@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-from random import Random
 from xml.etree import ElementTree
 
 from differential.scene_text import NAMES, new_pose, sub_element
@@ -44,7 +43,7 @@ SHAPES = {
 UNKNOWN_FRAME = 'no such frame'
 
 
-def joint_body(dice: Random, name: str, parent: str, child: str) -> Element:
+def joint_body(dice, name, parent, child):
     """Draw a joint with its type and axes, but without its pose."""
     kind = dice.choice(sorted(AXES))
     element = Element('joint', name=name, type=kind)
@@ -64,7 +63,7 @@ def joint_body(dice: Random, name: str, parent: str, child: str) -> Element:
     return element
 
 
-def fill(dice: Random, element: Element, references: list[str]) -> None:
+def fill(dice, element, references):
     """
     Draw the children of a link or joint.
 
@@ -107,7 +106,7 @@ def fill(dice: Random, element: Element, references: list[str]) -> None:
         _add_foreign(element)
 
 
-def add_mimics(dice: Random, joints: list[Element]) -> None:
+def add_mimics(dice, joints):
     """Let some axes of joints follow others."""
     leaders = [(joint, tag) for joint in joints for tag in ('axis', 'axis2')
                if joint.find(tag) is not None]
@@ -125,7 +124,7 @@ def add_mimics(dice: Random, joints: list[Element]) -> None:
             joint.find(tag).append(mimic)
 
 
-def _geometry(dice: Random) -> Element:
+def _geometry(dice):
     """Draw a shape."""
     geometry = Element('geometry')
     tag = dice.choice(sorted(SHAPES))
@@ -136,7 +135,7 @@ def _geometry(dice: Random) -> Element:
     return geometry
 
 
-def _make_inertial_automatic(dice: Random, link: Element) -> None:
+def _make_inertial_automatic(dice, link):
     """Let the collisions of a link give the inertial, most of the time."""
     inertial = link.find('inertial')
     if inertial is None or dice.randint(0, 3) == 0:
@@ -152,8 +151,7 @@ def _make_inertial_automatic(dice: Random, link: Element) -> None:
             del pose.attrib['relative_to']
 
 
-def _posed(dice: Random, element: Element, kind: str, name: str,
-          references: list[str]) -> Element:
+def _posed(dice, element, kind, name, references):
     """Add a child whose pose may name any frame, or one that does not exist."""
     child = sub_element(element, kind, name=name)
     reference = ''
@@ -168,7 +166,7 @@ def _posed(dice: Random, element: Element, kind: str, name: str,
     return child
 
 
-def _add_foreign(element: Element) -> None:
+def _add_foreign(element):
     """Add what SDFormat has to pass over unread."""
     plugin = sub_element(element, 'plugin', name='p', filename='libp.so')
     sub_element(plugin, 'pose', 'not a pose', relative_to='nothing')

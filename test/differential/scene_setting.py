@@ -4,18 +4,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
-from random import Random
 import tempfile
 
 from differential.scene_builder import SCENE, SceneFiles
 import sdf_pose_bridge
 from sdf_pose_bridge.scene.pose_setting import pose_change
-from sdf_pose_bridge.scene.scene import Scene
 
 
-def with_pose_set(scene: SceneFiles, dice: Random) -> SceneFiles:
+def with_pose_set(scene, dice):
     """
     Set the pose of one element, in the root.
 
@@ -28,7 +25,7 @@ def with_pose_set(scene: SceneFiles, dice: Random) -> SceneFiles:
         folder = Path(name).resolve()
         file = scene.write(folder, 'scene')
 
-        def load(texts: Mapping[str, bytes]) -> Scene:
+        def load(texts):
             return sdf_pose_bridge.load(file, resource_paths=[folder], texts=texts)
 
         pose = sdf_pose_bridge.Pose(

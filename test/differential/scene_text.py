@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import math
-from random import Random
 from xml.etree import ElementTree
 
 Element = ElementTree.Element
@@ -30,14 +29,14 @@ DEGREES = (0.0, 90.0, -90.0, 180.0, -180.0, 45.0, 360.0, 30.0, 89.9999, 270.0, -
 FORMATS = ('rpy', 'rpy', 'rpy', 'degrees', 'degrees', 'quaternion', 'quaternion', 'empty')
 
 
-def sub_element(parent: Element, tag: str, text: str | None = None, **attributes: str) -> Element:
+def sub_element(parent, tag, text=None, **attributes):
     """Add a child, and return it."""
     child = ElementTree.SubElement(parent, tag, attributes)
     child.text = text
     return child
 
 
-def new_name(dice: Random, taken: set[str]) -> str:
+def new_name(dice, taken):
     """Draw a name that is not taken, and take it."""
     stem = dice.choice(NAMES)
     name, number = stem, 1
@@ -48,7 +47,7 @@ def new_name(dice: Random, taken: set[str]) -> str:
     return name
 
 
-def text_from_number(dice: Random, value: float) -> str:
+def text_from_number(dice, value):
     """Write a number in one of the forms that C and SDFormat read."""
     form = dice.randrange(12)
     if form == 0:
@@ -66,7 +65,7 @@ def text_from_number(dice: Random, value: float) -> str:
     return repr(value)
 
 
-def number_from(dice: Random, often: tuple[float, ...], limit: float) -> float:
+def number_from(dice, often, limit):
     """Choose a number that people write, or any other up to a limit."""
     if dice.random() < 0.5:
         return dice.choice(often)
@@ -74,7 +73,7 @@ def number_from(dice: Random, often: tuple[float, ...], limit: float) -> float:
     return value if dice.random() < 0.7 else round(value, 3)
 
 
-def new_pose(dice: Random, reference: str = '') -> Element | None:
+def new_pose(dice, reference=''):
     """
     Draw a pose element, or None for no element.
 

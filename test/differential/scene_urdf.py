@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-from random import Random
 from xml.etree import ElementTree
 
 from differential.scene_text import (
@@ -36,13 +35,11 @@ ODD_NUMBERS = (
 class RobotBuilder:
     """Draws one robot."""
 
-    def __init__(self, dice: Random) -> None:
+    def __init__(self, dice):
         self.dice = dice
         self.root = Element('robot')
 
-    def robot(
-        self, taken: set[str], names: set[str],
-    ) -> tuple[Element, str, list[str], list[str]]:
+    def robot(self, taken, names):
         """
         Draw a robot.
 
@@ -68,7 +65,7 @@ class RobotBuilder:
             self.write_odd_number()
         return self.root, self.root.get('name', ''), ['__model__', *links], links
 
-    def write_odd_number(self) -> None:
+    def write_odd_number(self):
         """Replace one number by what may be none."""
         robot_origin = self.root.find('origin')  # an overflow there ends libsdformat
         places = [(element, name) for element in self.root.iter() for name in element.attrib
@@ -78,18 +75,18 @@ class RobotBuilder:
             element, name = self.dice.choice(places)
             element.set(name, self.dice.choice(ODD_NUMBERS))
 
-    def name(self, taken: set[str]) -> str:
+    def name(self, taken):
         """Draw a name on which libsdformat does not crash."""
         return next(name for name in iter(lambda: new_name(self.dice, taken), '')
                     if not set(name) & set('"\'&<'))
 
-    def numbers(self, often: tuple[float, ...], limit: float, count: int = 3) -> str:
+    def numbers(self, often, limit, count=3):
         """Draw numbers as they are written."""
         return self.dice.choice((' ', ' ', '  ')).join(
             text_from_number(self.dice, number_from(self.dice, often, limit))
             for _ in range(count))
 
-    def origin(self, parent: Element) -> None:
+    def origin(self, parent):
         """Add an origin, whole, in part or none."""
         choice = self.dice.randrange(8)
         if choice:
@@ -99,7 +96,7 @@ class RobotBuilder:
             if choice != 2:
                 origin.set('rpy', self.numbers(TURNS, 7))
 
-    def joint(self, name: str, parent: str, child: str) -> bool:
+    def joint(self, name, parent, child):
         """Add a joint; return whether it may lump its child into its parent."""
         kind = self.dice.choice(JOINT_TYPES)
         joint = sub_element(self.root, 'joint', name=name, type=kind)
@@ -117,7 +114,7 @@ class RobotBuilder:
                 sub_element(gazebo, option, self.dice.choice(('true', 'YES', '1', 'false', 'no')))
         return kind == 'fixed'
 
-    def link(self, name: str, *, is_massless: bool) -> None:
+    def link(self, name, *, is_massless):
         """Add a link."""
         link = sub_element(self.root, 'link', name=name)
         if not is_massless:
@@ -135,7 +132,7 @@ class RobotBuilder:
             tag = self.dice.choice(sorted(SHAPES))
             sub_element(sub_element(element, 'geometry'), tag, **SHAPES[tag])
 
-    def extensions(self, references: list[str], names: set[str]) -> None:
+    def extensions(self, references, names):
         """Add what is SDFormat in a URDF file."""
         for number in range(self.dice.randrange(5)):
             kind = self.dice.choice(MOVED)
@@ -169,7 +166,7 @@ class RobotBuilder:
             gazebo = sub_element(self.root, 'gazebo')
             sub_element(gazebo, 'pose', self.numbers(LENGTHS, 5, 6))
 
-    def extra_joint(self, links: list[str], names: set[str]) -> None:
+    def extra_joint(self, links, names):
         """Add a joint of SDFormat, which may name links that are lumped."""
         parent, child = self.dice.choices(links, k=2)
         gazebo = sub_element(self.root, 'gazebo')

@@ -9,11 +9,10 @@ Which values libsdformat refuses is its own affair: these scenes are not meant t
 from __future__ import annotations
 
 from functools import cache
-from random import Random
 from xml.etree import ElementTree
 
 from differential.scene_text import sub_element
-from sdf_pose_bridge.sdformat.grammar import Definition, definition_of, ValueType
+from sdf_pose_bridge.sdformat.grammar import definition_of, ValueType
 
 NUMBERS = (
     '', ' ', '1', '-1', '0', '0.5', '.5', '5.', '+2', '1e3', '1E-3', 'nan', 'NaN', 'inf', '-inf',
@@ -40,7 +39,7 @@ NOT_READ = frozenset({
 """What the package does not read as a part of its own, as no frame depends on it; and states,
 whose elements have other names in later releases of libsdformat."""
 
-def odd_scene(dice: Random) -> str:
+def odd_scene(dice):
     """Draw a file."""
     root = ElementTree.Element('sdf', version=dice.choice(('1.7', '1.9', '1.11')))
     paths = _paths()
@@ -56,16 +55,14 @@ def odd_scene(dice: Random) -> str:
 
 
 @cache
-def _paths() -> list[tuple[tuple[str, ...], str]]:
+def _paths():
     """Return the tags that lead to each value, and the attribute that has it; '' for the text."""
     found: list[tuple[tuple[str, ...], str]] = []
     _add_paths(definition_of('sdf', has_frames=True), (), found)
     return found
 
 
-def _add_paths(
-    definition: Definition, path: tuple[str, ...], found: list[tuple[tuple[str, ...], str]],
-) -> None:
+def _add_paths(definition, path, found):
     if path and definition.value_type is not None:
         found.append((path, ''))
     found += [(path, name) for name in definition.attributes
@@ -77,9 +74,7 @@ def _add_paths(
             _add_paths(child, (*path, str(tag)), found)
 
 
-def _add_odd_value(
-    dice: Random, root: ElementTree.Element, place: tuple[tuple[str, ...], str],
-) -> None:
+def _add_odd_value(dice, root, place):
     path, attribute = place
     element, definition = root, definition_of('sdf', has_frames=True)
     for tag in path:
@@ -102,7 +97,7 @@ def _add_odd_value(
         element.text = value
 
 
-def _complete(element: ElementTree.Element, definition: Definition | None = None) -> None:
+def _complete(element, definition=None):
     """Add what has to be there beside the odd values."""
     definition = definition or definition_of('sdf', has_frames=True)
     for name, attribute in definition.attributes.items():
@@ -125,7 +120,7 @@ def _complete(element: ElementTree.Element, definition: Definition | None = None
             _complete(child, child_definition)
 
 
-def _add_joined(scope: ElementTree.Element) -> None:
+def _add_joined(scope):
     """Add the links, or models in a world, that joints join, and the joint that axes follow."""
     tag = 'link' if scope.tag == 'model' else 'model'
     names = [child.get('name', _name_of(child)) for child in scope.findall(tag)]
@@ -140,5 +135,5 @@ def _add_joined(scope: ElementTree.Element) -> None:
             sub_element(leader, axis)
 
 
-def _name_of(element: ElementTree.Element) -> str:
+def _name_of(element):
     return 'l' if element.tag == 'link' else f'a_{element.tag}'

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-from random import Random
 import re
 
 ATTRIBUTE = re.compile(r'(?<= )[a-z_]+="[^"]*"')
@@ -23,7 +22,7 @@ INSIDE = (
 )
 
 
-def with_oddities(dice: Random, text: str) -> str:
+def with_oddities(dice, text):
     """
     Change what libsdformat forgives; the content stays what it is.
 

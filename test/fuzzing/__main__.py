@@ -43,7 +43,7 @@ def limited():
     assert seconds < LONGEST_S, f'the load has taken {seconds:.1f} s'
 
 
-def load_bytes(data: bytes) -> None:
+def load_bytes(data):
     """Load bytes as the content of a file."""
     with limited():
         load_text(data, str(ROOT / 'examples' / 'fuzzed.sdf'))
@@ -52,20 +52,20 @@ def load_bytes(data: bytes) -> None:
 class Dice(Random):
     """Draws from bytes, so that similar bytes make similar scenes."""
 
-    def __init__(self, data: bytes) -> None:
+    def __init__(self, data):
         super().__init__()
         self._provider = atheris.FuzzedDataProvider(data)
 
-    def random(self) -> float:
+    def random(self):
         """Return a number from 0 to 1."""
         return self.getrandbits(32) / 2 ** 32
 
-    def getrandbits(self, k: int) -> int:
+    def getrandbits(self, k):
         """Return a number of k bits."""
         return self._provider.ConsumeIntInRange(0, 2 ** k - 1)
 
 
-def load_scene(data: bytes) -> None:
+def load_scene(data):
     """Load a scene of one or several files, some of which are wrong."""
     scene = random_scene(Dice(data))
     with tempfile.TemporaryDirectory(dir=MEMORY) as folder:
@@ -78,7 +78,7 @@ def load_scene(data: bytes) -> None:
 TARGETS: dict[str, Callable[[bytes], object]] = {'bytes': load_bytes, 'scenes': load_scene}
 
 
-def main() -> None:
+def main():
     """Fuzz one target for some minutes."""
     parser = argparse.ArgumentParser(prog='fuzzing', description=__doc__)
     parser.add_argument('target', choices=TARGETS)

@@ -42,7 +42,7 @@ class Load(NamedTuple):
     outcome: str
 
 
-def measured(files: Files) -> Load:
+def measured(files):
     """Load files in a process of its own."""
     with tempfile.TemporaryDirectory(prefix='growth_') as folder:
         process = subprocess.run(
@@ -57,12 +57,12 @@ def measured(files: Files) -> Load:
     return Load(float(seconds), float(memory), outcome)
 
 
-def size_of(files: Files) -> int:
+def size_of(files):
     """Return how many bytes files have together."""
     return sum(len(text.encode(errors='surrogateescape')) for text in files.values())
 
 
-def largest_n(family: Callable[[int], Files], most_bytes: int) -> int:
+def largest_n(family, most_bytes):
     """Return for which n, to an eighth, the files of a family have about so many bytes."""
     n = 4
     while n < 50_000 and size_of(family(2 * n)) <= most_bytes:
@@ -71,13 +71,13 @@ def largest_n(family: Callable[[int], Files], most_bytes: int) -> int:
                default=n)
 
 
-def exponent(first: float, last: float, smallest: float) -> str:
+def exponent(first, last, smallest):
     """Return the exponent of the growth from n to 4 n."""
     is_noise = last < smallest or first <= 0.0
     return '' if is_noise else f'{math.log(last / first, 4.0):.1f}'
 
 
-def row(name: str, family: Callable[[int], Files], most_bytes: int) -> str:
+def row(name, family, most_bytes):
     """Measure a family; return a row of the table."""
     n = max(largest_n(family, most_bytes) // 4, 1)
     loads = [measured(family(count)) for count in (n, 2 * n, 4 * n)]
@@ -89,7 +89,7 @@ def row(name: str, family: Callable[[int], Files], most_bytes: int) -> str:
             f'{exponent(first.memory, last.memory, SMALLEST_BYTES):>4}  {last.outcome[:60]}')
 
 
-def main() -> int:
+def main():
     """Print the table; return 1 if a process was ended."""
     parser = argparse.ArgumentParser(prog='growth', description=__doc__)
     parser.add_argument(

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from pathlib import Path
 
 from sdf_texts import LINK, model_file, world_file
 import urdf_texts as urdf
@@ -19,7 +18,7 @@ Files = Mapping[str, str]
 """Texts by path; ``scene.sdf`` is loaded, and ``fuel`` is the cache of Gazebo Fuel."""
 
 
-def each(n: int, text: str) -> str:
+def each(n, text):
     """
     Return a text in which the part between two bars, or all of it, is there n times.
 
@@ -30,42 +29,42 @@ def each(n: int, text: str) -> str:
         part.replace('#', str(i)).replace('+', str(i + 1)) for i in range(n)) + end
 
 
-def nested(n: int, begin: str, inside: str, end: str = '</model>') -> str:
+def nested(n, begin, inside, end='</model>'):
     """Return a text in up to 200 others, each with its depth for ``#``."""
     return each(min(n, 200), begin) + inside + end * min(n, 200)
 
 
-def model(text: str, attributes: str = '', version: str = '1.9') -> str:
+def model(text, attributes='', version='1.9'):
     """Return a file of one model, which has a link."""
     return model_file(f'<link name="base"/>{text}', attributes=attributes, version=version)
 
 
-def include(text: str = '', attributes: str = '', uri: str = 'part.sdf') -> str:
+def include(text='', attributes='', uri='part.sdf'):
     """Return an include."""
     return f'<include {attributes}><uri>{uri}</uri>{text}</include>'
 
 
-def params(text: str) -> str:
+def params(text):
     """Return an include with parameters."""
     return include(f'<experimental:params>{text}</experimental:params>')
 
 
-def robot(text: str) -> str:
+def robot(text):
     """Return a robot in URDF, whose root is ``l0``."""
     return urdf.robot(urdf.link('l0') + text)
 
 
-def file_from_text(n: int, text: str) -> Files:
+def file_from_text(n, text):
     """Return the file that is loaded."""
     return {'scene.sdf': each(n, text)}
 
 
-def included_files(n: int, world: str, part: str) -> Files:
+def included_files(n, world, part):
     """Return a world that includes a model, with their contents."""
     return {'scene.sdf': world_file(each(n, world)), 'part.sdf': model(each(n, part))}
 
 
-def fuel(n: int, what: str = 'models') -> Files:
+def fuel(n, what='models'):
     """Return n models, or versions of one model, in the cache of Fuel."""
     folder = 'fuel/fuel.gazebosim.org/owner/models'
     paths = [f'{folder}/m{i}/1' if what == 'models' else f'{folder}/m0/{i + 1}' for i in range(n)]
@@ -74,7 +73,7 @@ def fuel(n: int, what: str = 'models') -> Files:
             for name, text in (('model.config', config), ('model.sdf', model('')))}
 
 
-def deep_placements(n: int) -> str:
+def deep_placements(n):
     """Return models in one another, each placed by the end of one chain of frames."""
     text, path = each(n, REPEATED['attachments in a row']), f'a{n}'
     for _ in range(min(n, 200)):
@@ -342,7 +341,7 @@ AROUND = {'model': '', 'includes': NAMED, 'merges': MERGED, 'params': UNKNOWN_ID
 """What includes the content of a model, n times; nothing where it is loaded itself."""
 
 
-def files_of(family: str, n: int, around: str = 'model') -> Files:
+def files_of(family, n, around='model'):
     """Return the files of a family, for a content of a model with what is around it."""
     if family in FILES:
         return FILES[family](n)
@@ -350,7 +349,7 @@ def files_of(family: str, n: int, around: str = 'model') -> Files:
     return {**files, 'part.sdf' if files else 'scene.sdf': model(PARTS[family](n))}
 
 
-def write(files: Files, folder: Path) -> Path:
+def write(files, folder):
     """Write files into a folder; return the path of the one that is loaded."""
     for path, text in files.items():
         file = folder / path

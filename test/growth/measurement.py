@@ -18,7 +18,7 @@ from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 
-def outcome_of_load(path: str) -> str:
+def outcome_of_load(path):
     """Load a file as the node does; return the codes of its errors, or its size."""
     try:
         scene = load(path)
@@ -33,7 +33,7 @@ def outcome_of_load(path: str) -> str:
     return f'{len(scene.names)} elements'
 
 
-def peak_bytes() -> int:
+def peak_bytes():
     """Return the peak of the memory of this process."""
     return 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
