@@ -103,15 +103,26 @@ def test_the_option_that_a_question_names_is_its_answer(convert, printed, source
 # Output.
 
 @pytest.mark.parametrize(('arguments', 'target', 'expected'), [
-    ('--mm --from sdf_rpy 300 0 500 0 0 0', 'sdf_rpy', [0.3, 0, 0.5, 0, 0, 0]),
-    ('--mm --from franka_measured 300 0 0 0 0 90', 'franka_measured', [300, 0, 0, 0, 0, 90]),
-    ('--degrees --from rpy 0 0 90', 'rpy', [0, 0, math.pi / 2]),
-    ('--radians --from rpy_degrees 0 0 1.5', 'rpy', [0, 0, 1.5]),
-    ('--from quaternion_xyzw 0.5 0 0 0.866', 'rpy_degrees', [60.0014555617, 0, 0]),
+    # Units are those of the given numbers alone.
+    ('--mm --from sdf_rpy 300 0 500 0 0 0', 'sdf_rpy', '0.3 0 0.5 0 0 0'),
+    ('--mm --from franka_measured 300 0 0 0 0 90', 'franka_measured', '300 0 0 0 0 90'),
+    ('--degrees --from rpy 0 0 90', 'rpy', '0 0 1.5707963267948966'),
+    ('--radians --from rpy_degrees 0 0 1.5', 'rpy', '0 0 1.5'),
+    ('--from quaternion_xyzw 0.5 0 0 0.866', 'rpy_degrees', '60.0014555617 0 0'),
+    # Inverses and products.
+    *((f'--from sdf_rpy_degrees 1 0 0 0 0 90 {products}', 'sdf_rpy_degrees', expected)
+      for products, expected in (
+        ('--inverse', '0 1 0 0 0 -90'),
+        ('--times 2 0 0 0 0 30', '1 2 0 0 0 120'),
+        ('--times 2 0 0 0 0 30 --times 0 0 1 0 0 0', '1 2 1 0 0 120'),
+        ('--times kuka_abc 2000 0 0 30 0 0', '1 2 0 0 0 120'),
+        ('--times-inverse 2 0 0 0 0 30', '0 -1.7320508075688772 0 0 0 60'),
+        ('--inverse --times 1 0 0 0 0 90', '0 0 0 0 0 0'),
+        ('--times sdf_quat_xyzw 0 0 -1 0 0 0 1', '1 0 -1 0 0 90'))),
 ])
-def test_units_are_those_of_the_given_numbers_alone(printed, arguments, target, expected):
+def test_units_and_products(printed, arguments, target, expected):
     out = printed(*arguments.split(), '--to', target)
-    assert numbers(out) == pytest.approx(expected, abs=1e-9)
+    assert numbers(out) == pytest.approx(numbers(expected), abs=1e-10)
 
 
 @pytest.mark.parametrize(('target', 'text'), [
@@ -141,22 +152,6 @@ def test_gimbal_lock_is_that_of_the_sequence(convert):
 
 
 # Products.
-
-@pytest.mark.parametrize(('arguments', 'expected'), [
-    ('--inverse', [0, 1, 0, 0, 0, -90]),
-    ('--times 2 0 0 0 0 30', [1, 2, 0, 0, 0, 120]),
-    ('--times 2 0 0 0 0 30 --times 0 0 1 0 0 0', [1, 2, 1, 0, 0, 120]),
-    ('--times kuka_abc 2000 0 0 30 0 0', [1, 2, 0, 0, 0, 120]),
-    ('--times-inverse 2 0 0 0 0 30', [0, -(3 ** 0.5), 0, 0, 0, 60]),
-    ('--inverse --times 1 0 0 0 0 90', [0, 0, 0, 0, 0, 0]),
-    ('--times sdf_quat_xyzw 0 0 -1 0 0 0 1', [1, 0, -1, 0, 0, 90]),
-])
-def test_poses_are_inverted_and_multiplied(printed, arguments, expected):
-    out = printed(
-        '--from', 'sdf_rpy_degrees', *'1 0 0 0 0 90'.split(), *arguments.split(),
-        '--to', 'sdf_rpy_degrees')
-    assert numbers(out) == pytest.approx(expected, abs=1e-12)
-
 
 def test_each_line_is_multiplied(convert):
     _, out, _ = convert('--from', 'rpy_degrees', '--times', 'ypr_degrees', '10', '0', '0', '--to',

@@ -60,15 +60,25 @@ def test_a_pose_that_cannot_be_used_is_reported_once(models, capfd, fields, line
     assert capfd.readouterr().err.count(line) == 1
 
 
-def test_the_frame_of_the_model_that_the_child_frame_id_names_is_put_there(models):
-    joints = models.positions.selection(['j'])
-    models.positions.update(joints, np.array([0.25]), 5)
-    assert models.moved(child='p/a/k') == ('a', 0.75, 2.0)
-    assert models.moved(child='a::k', model='a') == ('a', 0.75, 2.0)
-    assert models.moved(child='p/a/k', frame_id='p/fixed/l') == ('a', 0.75, 4.0)
-    assert models.moved(child='a', model='a') == ('a', 1.0, 2.0)
-    assert models.moved(child='base_link', model='a') == ('a', 1.0, 2.0)
-    assert models.moved(child='p/a/k', pose=QUARTER)[1:] == pytest.approx((1.0, 1.75))
+@pytest.mark.parametrize(('placement', 'fields', 'moved'), [
+    # The frame that the child frame id names.
+    ('', {'child': 'p/a/k'}, ('a', 0.75, 2.0)),
+    ('', {'child': 'a::k', 'model': 'a'}, ('a', 0.75, 2.0)),
+    ('', {'child': 'p/a/k', 'frame_id': 'p/fixed/l'}, ('a', 0.75, 4.0)),
+    ('', {'child': 'a', 'model': 'a'}, ('a', 1.0, 2.0)),
+    ('', {'child': 'base_link', 'model': 'a'}, ('a', 1.0, 2.0)),
+    ('', {'child': 'p/a/k', 'pose': QUARTER}, ('a', pytest.approx(1.0), pytest.approx(1.75))),
+    # The frame of the parameter, whatever the child frame id says.
+    ('k', {'child': '', 'model': 'a'}, ('a', 0.75, 2.0)),
+    ('k', {'child': 'p/a/l', 'model': 'a'}, ('a', 0.75, 2.0)),
+    ('k', {'child': '', 'model': 'a::b'}, ('a/b', 1.0, 2.0)),
+    ('k', {'child': '', 'model': 'a::b', 'frame_id': 'b/odom'}, ('a/b', 1.0, 5.0)),
+])
+def test_the_frame_that_a_message_or_the_parameter_names_is_put_there(
+        make_node, placement, fields, moved):
+    models = Models(make_node('bridge'), placement)
+    models.positions.update(models.positions.selection(['j']), np.array([0.25]), 5)
+    assert models.moved(**fields) == moved
 
 
 @pytest.mark.parametrize('child', ['a::b', 'p/a/b/l', 'fixed', 'world'])
@@ -78,16 +88,6 @@ def test_a_child_frame_id_of_another_model_is_reported_on_the_topic_of_a_model(
     assert not models.read(child=child, model='a')
     words = f'poses of "{child}", which are ignored: the topic is for the model "a"'
     assert words in capfd.readouterr().err
-
-
-def test_a_frame_of_each_model_can_be_put_there_whatever_the_child_frame_id_says(make_node):
-    models = Models(make_node('bridge'), 'k')
-    joints = models.positions.selection(['j'])
-    models.positions.update(joints, np.array([0.25]), 5)
-    assert models.moved(child='', model='a') == ('a', 0.75, 2.0)
-    assert models.moved(child='p/a/l', model='a') == ('a', 0.75, 2.0)
-    assert models.moved(child='', model='a::b') == ('a/b', 1.0, 2.0)
-    assert models.moved(child='', model='a::b', frame_id='b/odom') == ('a/b', 1.0, 5.0)
 
 
 def test_the_odometry_of_wheels_counts_from_the_file_whatever_the_parameters_say(models, capfd):
