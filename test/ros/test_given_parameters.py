@@ -123,6 +123,8 @@ def test_a_file_and_a_text_together_are_refused(settings):
     ('sdf_file', '', 'is not set'),
     ('root_frame', 5, 'is 5, which is an integer; it must be a string'),
     ('frame_names', 'Auto', 'is "Auto"; it must be one of auto, scoped, relative'),
+    ('model_name', 'a::b', 'is "a::b"; it must be the name of one model, without "::"'),
+    ('model_name', '/a', 'is "/a"; it must be the name of one model, without "::"'),
 ])
 def test_a_wrong_new_value_is_named_with_its_rule(settings, name, value, sentence):
     with pytest.raises(SettingsError) as refusal:

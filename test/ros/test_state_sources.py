@@ -109,11 +109,25 @@ def test_other_types_and_several_are_reported_once(
 def test_topics_that_are_no_longer_wanted_are_returned(sources, node):
     sources.publish(PoseStamped)
     sources.wait_for(a='PoseStamped')
-    unwanted = sources.follow(StateTopics({'joint_states': ''}), SETTINGS, POSITIONS)
-    assert [each.name for each in unwanted] == ['/a/pose']
-    for each in unwanted:
-        node.destroy_subscription(each.subscription)
-    sources.wait_for()
+    # The topic is for another model now, and then for none.
+    for wanted, types in (({'a/pose': 'b'}, {'a': 'PoseStamped'}), ({}, {})):
+        unwanted = sources.follow(StateTopics({'joint_states': ''}, wanted), SETTINGS, POSITIONS)
+        assert [each.name for each in unwanted] == ['/a/pose']
+        for each in unwanted:
+            node.destroy_subscription(each.subscription)
+        sources.wait_for(**types)
+
+
+def test_another_simulator_replaces_the_one_before(sources, node):
+    pytest.importorskip('simulation_interfaces', reason='needs simulation_interfaces')
+    for names, others in ((['one'], True), (['two'], True), ([], False)):
+        settings = settings_from_values({
+            'sdf_file': 'a.sdf', 'simulator': names[0] if names else '',
+            'simulator_others': others})
+        sources.follow(StateTopics({}), settings, POSITIONS)
+        assert [each.name for each in sources.sources.sources] == [
+            f'/{name}/get_entities_states' for name in names]
+        assert len([*node.clients]) == 2 * len(names)
 
 
 def test_warnings_are_repeated_only_if_they_change(sources, capfd):

@@ -5,7 +5,9 @@
 import math
 
 from deadline import spin_until
+import pytest
 from rclpy.qos import DurabilityPolicy, QoSProfile
+from sdf_texts import world_file, write_files
 from visualization_msgs.msg import Marker, MarkerArray
 
 from sdf_pose_bridge.ros.visuals import VisualPublisher
@@ -14,6 +16,24 @@ from sdf_pose_bridge.tf.loading import loaded_scene_from_request
 
 SDF = """<sdf version="1.10"><model name="m"><link name="l">
 <visual name="v"><geometry><{shape}/></geometry></visual></link></model></sdf>"""
+
+
+@pytest.mark.parametrize('part', [SDF.replace('"l"', '"k"').format(shape='box'), '<sdf'])
+def test_shapes_of_an_included_file_that_has_changed_are_not_shown(
+        make_node, make_executor, reader, tmp_path, capfd, part):
+    node, listener = make_node('bridge'), make_node('listener')
+    write_files(tmp_path, part=SDF.format(shape='box'), m=world_file(
+        '<include><uri>part.sdf</uri></include>'))
+    visuals = VisualPublisher(node, reader, loaded_scene_from_request(
+        LoadRequest(str(tmp_path / 'm.sdf'), '')))
+    write_files(tmp_path, part=part)
+    visuals.switch(on=True)
+    listener.create_subscription(MarkerArray, '/bridge/visuals', print, 1)
+    executor = make_executor(listener)
+    spin_until(executor, lambda: visuals.go_on() < math.inf)
+    spin_until(executor, lambda: visuals.go_on() == math.inf)
+    assert capfd.readouterr().err.count(
+        f'a file that {tmp_path}/m.sdf includes has changed since it was read') == 1
 
 
 def test_shapes_of_the_scene_before_are_no_longer_read_and_not_shown(
