@@ -102,9 +102,11 @@ def test_a_call_without_an_answer_is_followed_by_a_second_one(
     monkeypatch.setattr(module, 'LONGEST_CALL_S', 0.0)
     spin_until(node.executor, lambda: len(requests) > 2)
     assert simulator._problem.startswith('no answer in')
+    assert len(simulator._calls) == 2
     monkeypatch.undo()
     spin_until(node.executor, lambda: simulator.has_answers)
     assert not simulator._problem
+    assert not simulator._calls
 
 
 @pytest.mark.parametrize(('names', 'states', 'line'), [
