@@ -89,12 +89,12 @@ def test_a_topic_of_several_robots_keeps_its_name_and_is_told():
 
 
 def test_names_that_ros_forbids_are_escaped_as_by_the_node():
-    text = world_file(model('2', model('2', plugin('DiffDrive') + JOINTS) + JOINTS))
+    text = world_file(model('r 1', model('r 12', plugin('DiffDrive') + JOINTS) + JOINTS))
     assert names_in(text, ('joints',)) == {
-        '/x32_/joint_states': '/world/w/model/2/joint_state',
-        '/x32_/x32_/joint_states': '/world/w/model/2/model/2/joint_state'}
+        '/r_x20_1/joint_states': '/world/w/model/r_1/joint_state',
+        '/r_x20_1/r_x20_12/joint_states': '/world/w/model/r_1/model/r_12/joint_state'}
     assert parameters_of(text) == [
-        ['/{model}/joint_states', '/{model}/x32_/joint_states'], ['/{model}/odometry'], []]
+        ['/{model}/joint_states', '/{model}/r_x20_12/joint_states'], ['/{model}/odometry'], []]
 
 
 def test_plugins_in_one_model():
