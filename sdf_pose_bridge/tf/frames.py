@@ -77,7 +77,7 @@ class Frames(NamedTuple):
 
     def transforms(self) -> PoseArray:
         """Return the pose of each frame in its parent; the identity if it has none."""
-        # The last pose is for ROOT_IS_PARENT.
+        # The last pose is for ROOT_IS_PARENT; frames without a parent get theirs below.
         transforms = canonical_relative_poses(
             np.concatenate([self.poses, [Pose()]])[self.parents], self.poses)
         transforms[self.parents == NO_PARENT] = Pose()

@@ -181,7 +181,7 @@ def test_all_frame_ids_are_made_in_one_place(monkeypatch, text, ids):
     assert list(tree.frame_ids) == [f'r/{each}_sim' for each in ids]
 
 
-def test_a_joint_has_none_if_another_one_has_its_name_or_it_is_not_wanted():
+def test_a_joint_has_no_frame_if_another_one_has_its_name_or_none_is_wanted():
     text = world_file(
         '<model name="base"><link name="l"/></model><model name="arm"><link name="k"/></model>'
         + joint(AWAY.replace('>a<', '>base<').replace('>b<', '>arm<'), 'j', 'revolute')
