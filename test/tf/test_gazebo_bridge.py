@@ -90,7 +90,8 @@ def test_a_topic_of_several_robots_keeps_its_name_and_is_told():
 
 def test_names_that_ros_forbids_are_escaped_as_by_the_node():
     text = world_file(model('r 1', model('r 12', plugin('DiffDrive') + JOINTS) + JOINTS))
-    assert names_in(text, ('joints',)) == {
+    assert names_in(text, ('joints', 'odometry')) == {
+        '/r_x20_1/r_x20_12/odometry': '/model/r_12/odometry',
         '/r_x20_1/joint_states': '/world/w/model/r_1/joint_state',
         '/r_x20_1/r_x20_12/joint_states': '/world/w/model/r_1/model/r_12/joint_state'}
     assert parameters_of(text) == [
