@@ -59,8 +59,6 @@ IN_TWO = '<model name="n"><link name="k"/>{}</model><model name="o"><link name="
 
 
 @pytest.mark.parametrize(('old', 'new', 'changes'), [
-    ('', F, ['added frame m::f ']),
-    (F, '', ['removed frame m::f m::f']),
     (F, F.replace('frame', 'link'), ['removed frame m::f m::f', 'added link m::f ']),
     (F, '<link name="g"/>', ['removed frame m::f m::f', 'added link m::g ']),
     (F, posed('frame', 'g', '0 1 0 0 0 0'), ['removed frame m::f m::f', 'added frame m::g ']),

@@ -19,6 +19,7 @@ from sdf_pose_bridge import load_text
 
 A = '<link name="a"/>'
 B = '<link name="b"><pose>1 0 0 0 0 1.5707963267948966</pose></link>'
+RING = posed('frame', 'f', '', 'g') + posed('frame', 'g', '', 'f')
 LOOP = '<frame name="f" attached_to="g"/><frame name="g" attached_to="f"/>'
 NESTED = '<model name="n"><pose>0 0 1 0 0 0</pose><link name="k"/></model>'
 
@@ -52,10 +53,11 @@ REFUSED = {
     'POSE_RELATIVE_TO_CYCLE': {
         with_a: [
             '<frame name="f"><pose relative_to="f"/></frame>',
-            posed('frame', 'f', '', 'g') + posed('frame', 'g', '', 'f'),
+            RING,
             posed('link', 'b', '', 'j') + fixed_joint('j', 'a', 'b'),
             *(f'<model name="n"><pose relative_to="{name}"/><link name="k"/></model>'
-              for name in ('n', 'n::k', 'n::__model__'))],
+              for name in ('n', 'n::k', 'n::__model__')),
+            f'<model name="n" placement_frame="f"><link name="k"/>{RING}</model>'],
         world_file: [
             '<model name="n"><pose relative_to="f"/><link name="k"/></model>'
             + posed('frame', 'f', '', 'n::k'), '<frame name="f"><pose relative_to="f"/></frame>'],

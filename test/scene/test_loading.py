@@ -113,5 +113,7 @@ def test_unknown_choice_for_missing_includes_is_refused():
 
 
 def test_resource_path_that_is_not_a_directory_is_a_warning():
-    (warning,) = load_text(model_file(LINK), resource_paths=['nowhere']).warnings
+    # The text is replaced like that of a file.
+    texts = {'<text>': model_file(LINK)}
+    (warning,) = load_text('', resource_paths=['nowhere'], texts=texts).warnings
     assert warning.message == 'resource_paths names "nowhere", which is not a directory'

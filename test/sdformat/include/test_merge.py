@@ -169,9 +169,11 @@ def test_override_corrects_a_wrong_file(scene_of, text, content):
 # What moves
 
 def test_content_moves_to_the_place_of_the_include(scene_of):
-    scene = scene_of(in_model('<frame name="a"/>' + include() + '<frame name="b"/>'))
+    scene = scene_of(in_model(
+        '<frame name="a"/>' + include() + posed('frame', 'b', '1 0 0 0 0 0', PROXY)))
     assert names_of(scene) == [
         'm', 'm::base', 'm::a', f'm::{PROXY}', 'm::upper', 'm::f', 'm::b']
+    assert_at(scene, 'm::b', (1, 0, 1))
 
 
 @pytest.mark.parametrize('frame', ['upper', 'f', 'n::k', '__model__'])
@@ -186,11 +188,6 @@ def test_placement_frame_of_the_file_places_the_merged_elements(scene_of, frame)
     assert_at(scene, name, (5, 0, 0))
     proxy = scene.index(f'm::{PROXY}')
     assert scene.names[scene.placements.get(proxy, proxy)] == name
-
-
-def test_proxy_frame_can_be_referred_to(scene_of):
-    scene = scene_of(in_model(include() + posed('frame', 'g', '1 0 0 0 0 0', PROXY)))
-    assert_at(scene, 'm::g', (1, 0, 1))
 
 
 def test_proxy_frame_is_attached_to_the_canonical_link(scene_of):
@@ -259,11 +256,13 @@ def test_pose_that_is_added_to_a_merged_link_without_one_has_no_effect(scene_of)
 
 def test_doubtful_pose_of_a_merge_is_warned_of_once(scene_of):
     visual = posed('visual', 'v', '', 'zzz')
+    doubtful = '<pose>0 0 0 0 0 90</pose>'
     scene = scene_of(
-        in_model(include('<pose>0 0 0 0 0 90</pose>')),
+        in_model(f'{include(doubtful)}\n<model name="k">{include("<name>x</name>" + doubtful)}'
+                 '</model>'),
         arm=arm(f'\n<link name="l">{visual}</link>'))
     assert [(warning.code, warning.place.line) for warning in scene.warnings] == [
-        ('WARNING', 2), ('POSE_RELATIVE_TO_INVALID', 3)]
+        ('WARNING', 2), ('WARNING', 3), *[('POSE_RELATIVE_TO_INVALID', 3)] * 2]
 
 
 def test_placement_frame_in_a_cycle_is_reported_as_the_cycle_alone(tmp_path):

@@ -155,15 +155,11 @@ def test_mimic_of_a_joint_that_does_not_exist_is_left_out_for_ros():
     assert 'there is no joint "k"' in scene.warnings[0].message
 
 
-def test_axis_is_x_where_none_is_given():
-    model = model_from(robot(joined()))
-    assert model.find('joint/axis/xyz').text == '1 0 0'
-
-
-def test_continuous_joint_has_no_range():
+def test_continuous_joint_has_no_range_and_by_default_the_axis_x():
     limit = '<limit lower="-1" upper="1" effort="3" velocity="4"/>'
     model = model_from(robot(joined(limit)))
     assert [child.tag for child in model.find('joint/axis/limit')] == ['effort', 'velocity']
+    assert model.find('joint/axis/xyz').text == '1 0 0'
 
 
 def test_link_world_is_the_world():
@@ -265,6 +261,7 @@ def test_fixed_joint_stays_for_ros_with_all_that_its_link_has():
     ('<disableFixedJointLumping>1</disableFixedJointLumping>', 'revolute'),
     ('<disableFixedJointLumping>1</disableFixedJointLumping><preserveFixedJoint value="1"/>',
      'fixed'),
+    ('<preserveFixedJoint value="1"/><disableFixedJointLumping value="1"/>', 'fixed'),
 ])
 def test_fixed_joint_is_kept_on_demand(option, expected):
     text = robot(TWO_FIXED + gazebo(option, 'j'))
@@ -468,7 +465,7 @@ def test_pose_of_the_robot(content, x):
 
 
 def test_robot_is_static_in_an_include_alone(included):
-    text = link('a') + gazebo('<static>yes</static>')
+    text = link('a') + gazebo('<static>yes</static>') + gazebo('<static>no</static>', 'a')
     assert len(included(text).static_models) == 1
     assert not for_ros(text).static_models, 'in ROS its joints move'
 

@@ -46,7 +46,7 @@ def test_numbers_are_read_as_by_urdfdom(text, numbers):
 
 @pytest.mark.parametrize(('attributes', 'content', 'message'), [
     *(({'x': text}, '@x:vector3', 'must be three numbers such as')
-      for text in ('', '1 2', '1 2 3 4', '1, 2, 3', '1\t2 3 4', '1\n 2 3',
+      for text in ('', '1 2', '1 2 3 4', '1 x 2 3', '1, 2, 3', '1\t2 3 4', '1\n 2 3',
                    *(f'1 2 {text}' for text in NO_NUMBERS))),
     *(({'x': text}, '@x:double', 'must be a number such as')
       for text in ('', ' ', '1 ', '1 2', *NO_NUMBERS)),
@@ -68,10 +68,10 @@ def test_options(text, expected):
 
 
 @pytest.mark.parametrize(('digits', 'expected'), [
-    (16, '0.3333333333333333 0 1e-05 inf'), (6, '0.333333 0 1e-05 inf'),
+    ([], '0.3333333333333333 0 1e-05 inf'), ([6], '0.333333 0 1e-05 inf'),
 ])
 def test_text_of_numbers(digits, expected):
-    assert text_from_numbers([1 / 3, 0.0, 1e-5, math.inf], digits) == expected
+    assert text_from_numbers([1 / 3, 0.0, 1e-5, math.inf], *digits) == expected
 
 
 @pytest.mark.parametrize(('function', 'tolerance'), [
