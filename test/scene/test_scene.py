@@ -171,18 +171,12 @@ def test_pose_is_relative_to_its_reference():
         <link name="a"/>
         <frame name="f"><pose relative_to="a">0 0 1 0 0 0</pose></frame>
         <frame name="g"/>"""))
-    names = {name: scene.names[scene.references[index]] for index, name in enumerate(scene.names)
-             if scene.references[index] >= 0}
-    assert names == {'m': '__root__', 'm::a': 'm', 'm::f': 'm::a', 'm::g': 'm'}
+    assert scene.names == ('__root__', 'm', 'm::a', 'm::f', 'm::g')
+    assert scene.references.tolist() == [-1, 0, 1, 2, 1]
 
 
 def test_own_name_has_no_scope(worlds):
     assert [worlds.own_name(index) for index in range(4)] == ['day', 'table', 'top', 'noon']
-
-
-def test_scene_has_its_files(scene):
-    assert scene.files == ('<text>',)
-    assert not scene.file_indices.any()
 
 
 # Default references and ancestors

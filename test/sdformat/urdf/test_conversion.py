@@ -229,8 +229,13 @@ def test_links_without_mass_below_others_are_lumped_as_if_they_were_not_there_fo
 
 # Fixed joints
 
+def test_joint_with_the_name_of_a_link_is_refused_in_an_include(errors_in):
+    codes = {error.code for error in errors_in(TWO + joint('b', 'a', 'b', 'continuous'))}
+    assert 'DUPLICATE_NAME' in codes
+
+
 def test_fixed_joint_leaves_two_frames_in_an_include(included):
-    scene = included(TWO_FIXED)
+    scene = included(TWO_FIXED + gazebo('<preserveFixedJoint>no</preserveFixedJoint>', 'j'))
     kinds = kinds_of(scene)
     assert (kinds['n::j'], kinds['n::b']) == ('frame', 'frame')
     assert scene.pose('n::b')[:3] == (6.0, 0.0, 0.0)
