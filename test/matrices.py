@@ -6,6 +6,9 @@ import math
 
 import numpy as np
 
+OPTICAL = np.array([[0.0, 0, 1, 0], [-1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
+"""Pose of the optical frame of a camera in the frame of its sensor."""
+
 
 def axis_rotation(axis, angle):
     """Return the rotation about one axis (0 x, 1 y, 2 z) by an angle in radians."""

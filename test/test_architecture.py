@@ -39,14 +39,14 @@ def test_files_that_a_page_names_exist(page):
     rooms = '|'.join(sorted({module.parts[0] for module in MODULES}))
     named = re.findall(
         rf'`((?:(?:{rooms}|test|docs|config|underlay)/)[\w/.]+)`',
-        page.read_text(encoding='utf-8'))
+        page.read_text())
     assert [name for name in named
             if not (PACKAGE / name).exists() and not (ROOT / name).exists()] == []
 
 
 def names_defined_in(path):
     """Return the names of the classes, functions, constants and fields in a module."""
-    for node in ast.walk(ast.parse(path.read_text(encoding='utf-8'))):
+    for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
             yield node.name
         elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
@@ -54,7 +54,7 @@ def names_defined_in(path):
 
 
 def test_classes_functions_and_constants_that_the_page_on_architecture_names_exist():
-    text = (ROOT / 'docs/architecture.md').read_text(encoding='utf-8')
+    text = (ROOT / 'docs/architecture.md').read_text()
     named = re.findall(r'`(?:[a-z_]+\.)?([A-Z]\w+|[a-z]+_\w+)`', text)
     defined = {name for module in MODULES for name in names_defined_in(PACKAGE / module)}
     assert 'Scene' in named

@@ -59,7 +59,7 @@ NOT_RUN = {
 def blocks():
     """Give each page with the lines of each of its indented blocks."""
     for page in PAGES:
-        text = re.sub(r'^```.*?^```$', '', page.read_text(encoding='utf-8'), flags=re.M | re.S)
+        text = re.sub(r'^```.*?^```$', '', page.read_text(), flags=re.M | re.S)
         for block in re.findall(r'(?:(?:^|\n)(?: {4}.*)?(?=\n|$))+', text):
             lines = [line[4:] for line in block.strip('\n').splitlines()]
             if any(lines):

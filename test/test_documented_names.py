@@ -21,7 +21,7 @@ from sdf_pose_bridge.sdformat.versions import NEWEST, OLDEST
 
 
 def text_of(path):
-    return (ROOT / path).read_text(encoding='utf-8')
+    return (ROOT / path).read_text()
 
 
 def names_in(page):

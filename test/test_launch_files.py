@@ -181,23 +181,20 @@ def test_package_that_is_not_installed_is_reported_before_anything_starts(
         nodes_of(name, sdf_file='a.sdf', **arguments)
 
 
-@pytest.mark.usefixtures('rviz_installed')
 @pytest.mark.parametrize('name', BRIDGE_FILES)
-def test_rviz_starts_with_the_file_of_this_package(name):
+def test_rviz_starts_with_the_file_of_this_package(rviz_installed, name):
     (option, file), remappings = rviz_of(name, sdf_file='a.sdf')
     assert (option, Path(file).resolve(), remappings) == ('-d', RVIZ_FILE, {})
 
 
-@pytest.mark.usefixtures('rviz_installed')
 @pytest.mark.parametrize('namespace', ['left', '/left'])
-def test_rviz_follows_root_frame_and_namespace(namespace):
+def test_rviz_follows_root_frame_and_namespace(rviz_installed, namespace):
     words, remappings = rviz_of('bridge.launch.py', root_frame='map', namespace=namespace)
     assert words[2:] == ['-f', 'map']
     assert remappings == {VISUALS: f'/left{VISUALS}'}
 
 
-@pytest.mark.usefixtures('rviz_installed')
-def test_the_fixed_frame_of_rviz_is_the_root_of_what_is_published(tmp_path):
+def test_the_fixed_frame_of_rviz_is_the_root_of_what_is_published(rviz_installed, tmp_path):
     params_file = tmp_path / 'params.yaml'
     params_file.write_text('/**: {ros__parameters: {frame_prefix: r1/}}')
     file = FOLDER.parent / 'examples/mobile_robot.sdf'

@@ -243,7 +243,7 @@ def test_tests_are_collected_where_modules_are_missing():
 @pytest.mark.parametrize('path', sorted(ROOT.glob('launch/*.py')), ids=lambda path: path.name)
 def test_launch_files_import_names_that_exist(path):
     pytest.importorskip('rclpy', reason='needs ROS 2')
-    for node in ast.walk(ast.parse(path.read_text(encoding='utf-8'))):
+    for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, ast.ImportFrom) and node.module.startswith('sdf_pose_bridge'):
             module = importlib.import_module(node.module)
             assert [name.name for name in node.names if not hasattr(module, name.name)] == []

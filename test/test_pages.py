@@ -54,7 +54,7 @@ def dead_links(folder):
     """Return the local links of all pages that lead to no file."""
     dead = []
     for page in folder.rglob('*.html'):
-        for link in re.findall(r'(?:href|src)="([^"]*)"', page.read_text(encoding='utf-8')):
+        for link in re.findall(r'(?:href|src)="([^"]*)"', page.read_text()):
             path = unquote(urlsplit(link).path)
             if urlsplit(link).scheme or not path:
                 continue
@@ -73,7 +73,7 @@ def test_no_link_is_dead(how, request):
 
 @pytest.mark.parametrize('how', ['pages', 'pages_of_rosdoc2'])
 def test_loading_has_its_public_name_with_all_parameters(how, request):
-    page = (request.getfixturevalue(how) / 'python_api.html').read_text(encoding='utf-8')
+    page = (request.getfixturevalue(how) / 'python_api.html').read_text()
     entry = page.partition('id="sdf_pose_bridge.load"')[2].partition('id="sdf_pose_bridge.')[0]
     names = ('path', 'resource_paths', 'on_missing_include', 'limits', 'shapes', 'texts')
     assert [name for name in names if f'<strong>{name}</strong>' not in entry] == []
@@ -81,14 +81,14 @@ def test_loading_has_its_public_name_with_all_parameters(how, request):
 
 def test_pages_have_the_version_and_their_address(pages):
     version = ET.parse(ROOT / 'package.xml').getroot().findtext('version')
-    page = (pages / 'joints.html').read_text(encoding='utf-8')
+    page = (pages / 'joints.html').read_text()
     assert f'sdf_pose_bridge {version}</title>' in page
     assert f'<link rel="canonical" href="{URL}joints.html"' in page
 
 
 def test_the_page_for_wrong_addresses_works_at_any_of_them(pages):
     pytest.importorskip('notfound', reason='needs sphinx-notfound-page')
-    page = (pages / '404.html').read_text(encoding='utf-8')
+    page = (pages / '404.html').read_text()
     local = [link for link in re.findall(r'(?:href|src)="([^"#]+)"', page)
              if not urlsplit(link).scheme]
     assert local
@@ -98,5 +98,5 @@ def test_the_page_for_wrong_addresses_works_at_any_of_them(pages):
 @pytest.mark.parametrize(('page', 'language'), [
     ('command_line', 'console'), ('index', 'bash'), ('moving_here', 'xml'), ('joints', 'python')])
 def test_blocks_are_highlighted(pages, page, language):
-    text = (pages / f'{page}.html').read_text(encoding='utf-8')
+    text = (pages / f'{page}.html').read_text()
     assert f'class="highlight-{language} ' in text

@@ -28,13 +28,13 @@ PHRASES = {
 
 
 def paragraphs_of_page(page):
-    text = page.read_text(encoding='utf-8')
+    text = page.read_text()
     return [' '.join(each.split()) for each in re.split(r'\n\n|\n(?=[*|-] )', text)]
 
 
 def docstrings_and_messages(module):
     """Return the docstrings of a module, also those of attributes, and all its other texts."""
-    nodes = list(ast.walk(ast.parse(module.read_text(encoding='utf-8'))))
+    nodes = list(ast.walk(ast.parse(module.read_text())))
     texts = {
         id(node): node.value for node in nodes
         if isinstance(node, ast.Constant) and isinstance(node.value, str)}

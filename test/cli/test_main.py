@@ -72,8 +72,7 @@ sys.exit(main.main())
     # The parser has not enough memory.
     ('memory_bytes=5 * 10**7', 'sdf_pose tree: this needs more than 50 MB of memory'),
 ])
-@pytest.mark.usefixtures('large_file')
-def test_a_file_that_needs_too_much_is_one_sentence(files, limit, message):
+def test_a_file_that_needs_too_much_is_one_sentence(large_file, files, limit, message):
     done = completed(
         [sys.executable, '-c', LIMITED.format(limit), 'tree', 'large.sdf'], cwd=files,
         env=ENVIRONMENT)
@@ -87,8 +86,7 @@ def test_output_that_cannot_be_written_is_one_sentence(sdf_pose_in_shell):
         'sdf_pose: the output cannot be written: no space left on device\n')
 
 
-@pytest.mark.usefixtures('large_file')
-def test_a_lack_of_memory_is_one_sentence(sdf_pose_in_shell):
+def test_a_lack_of_memory_is_one_sentence(large_file, sdf_pose_in_shell):
     # Libraries alone have about 200 MB of addresses.
     done = sdf_pose_in_shell('tree large.sdf', 'ulimit -v 300000;', OPENBLAS_NUM_THREADS='1')
     assert done.returncode == 1

@@ -63,6 +63,10 @@ class LoggedProcess:
         assert line is not None, f'no line with "{text}" but:\n' + '\n'.join(self.lines)
         return line
 
+    def count_of(self, text):
+        """Return the number of lines with a text so far."""
+        return sum(text in line for line in self.lines)
+
     def wait_until_handling(self, number):
         """Wait until the process has a handler of its own for a signal."""
         self._wait_for_status(
@@ -84,7 +88,7 @@ class LoggedProcess:
             assert self._process.poll() is None, '\n'.join(self.lines)
             return condition(self._status())
 
-        wait_until(has_come, lambda: time.sleep(0.001), lambda: what)
+        wait_until(has_come, lambda: time.sleep(0.001), what)
 
     def _status(self):
         text = Path(f'/proc/{self.pid}/status').read_text(encoding='ascii')

@@ -148,6 +148,10 @@ class TfListener:
         self.count += 1
         self.last.update({each.child_frame_id: each for each in message.transforms})
 
+    def wait_for_frames(self, *frames):
+        """Wait until there is a transform of each frame."""
+        self.listener.wait_for_keys(self.last, frames)
+
     def wait_for(self, frame, sec):
         """Wait for a transform with a stamp; return its translation and rotation."""
         self.listener.wait(

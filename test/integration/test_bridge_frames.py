@@ -7,7 +7,7 @@ What is expected is worked out here, from the numbers in the file, with matrices
 for TF parents; nothing of the package takes part.
 """
 
-from matrices import assert_same_pose, matrix_from_degrees
+from matrices import assert_same_pose, matrix_from_degrees, OPTICAL
 import numpy as np
 import pytest
 
@@ -49,7 +49,6 @@ BASE = matrix_from_degrees(0, 0, 1)
 EYE = BASE @ matrix_from_degrees(0.2, 0, 0.3, 0, 30, 0)
 ARM = BASE @ matrix_from_degrees(1, 0, 0, 90, 0, 0)
 HAND = ARM @ matrix_from_degrees(0, 0, 0.5)
-OPTICAL = np.array([[0.0, 0, 1, 0], [-1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 
 PARENTS_AND_POSES = {
     'table/top': ('world', TOP),

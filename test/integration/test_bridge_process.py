@@ -97,8 +97,8 @@ def test_each_reason_not_to_start_has_a_line(
 def test_a_wrong_command_line_is_explained(start_bridge, arguments, text):
     bridge = start_bridge(*arguments)
     assert bridge.wait_for_end() == 1
-    assert any(text in line for line in bridge.lines)
-    assert not any('Traceback' in line for line in bridge.lines)
+    assert bridge.count_of(text)
+    assert not bridge.count_of('Traceback')
 
 
 @needs_fast_dds
@@ -114,7 +114,7 @@ def test_the_profile_of_the_middleware_is_logged_for_debugging(
     bridge = start('--ros-args', '--log-level', 'sdf_pose_bridge:=debug')
     assert text in bridge.wait_for_line('middleware profile')
     bridge.wait_until_started()
-    assert not [line for line in bridge.lines if 'XMLPARSER' in line]
+    assert not bridge.count_of('XMLPARSER')
 
 
 @STOP_SIGNALS
@@ -155,7 +155,7 @@ def test_a_negative_time_on_the_clock_does_not_end_it(start, start_listener):
     def is_reported():
         # The first messages are lost, until the bridge has discovered the publisher.
         clock.publish(Clock(clock=Time(sec=-1)))
-        return any('internal error in a callback: ' in line for line in bridge.lines)
+        return bridge.count_of('internal error in a callback: ')
 
     listener.wait(is_reported, bridge.lines)
     assert reload(listener).success

@@ -65,7 +65,7 @@ def test_transforms_name_the_models_that_they_move(follow, tf, tracker):
         'cart/deck', 'cart/crate/box', 'arm/base')] == [4.0, 5.0, 6.0]
     bridge.wait_for_line('/poses has poses of "wall", which are ignored')
     bridge.wait_for_line('/poses has poses in "elsewhere", which are ignored')
-    assert sum('which are ignored' in line for line in bridge.lines) == 2
+    assert bridge.count_of('which are ignored') == 2
 
 
 def test_a_tracker_may_come_late_stop_and_come_back_with_another_type(follow, tf, tracker):
@@ -90,7 +90,7 @@ def test_many_poses_of_hostile_names_delay_no_look_up(follow, tf, tracker):
             for each in hostile for names in ((each, 'cart'), ('', each))]), '/hostile')
         assert pose_of(tf, 'cart/deck').x == 3.0
     tracker.move(4.0)
-    assert not any('internal error' in line for line in bridge.lines)
+    assert not bridge.count_of('internal error')
 
 
 def test_poses_in_a_frame_that_moves_follow_it(follow, tf, tracker, joints):
@@ -143,7 +143,7 @@ def test_models_keep_their_poses_when_the_file_is_read_again(follow, file, tf, t
 
 def test_models_can_be_where_the_file_puts_them_at_first(bridge, follow, tf):
     follow(unreported_joints='zero')
-    tf.listener.wait(lambda: 'cart/deck' in tf.last, tf.last)
+    tf.wait_for_frames('cart/deck')
     assert tf.last['cart/deck'].transform.translation.x == 1.0
     listen_to_tf(tf.listener)
     tf.listener.wait(lambda: tf.listener.tf_messages, '/tf_static')
@@ -157,7 +157,7 @@ def test_the_example_moves_the_part_of_the_work_cell(start_bridge, start_program
         sdf_file=EXAMPLES / 'work_cell.sdf', model_pose_topics=[TOPIC]).wait_until_started()
     start_program([
         sys.executable, EXAMPLES / 'track_part.py', '--ros-args', '-p', 'frame:=robot/tool0'])
-    tf.listener.wait(lambda: 'gear_housing/body' in tf.last, tf.last)
+    tf.wait_for_frames('gear_housing/body')
     answer = call(tf.listener, LookupPose, frame='gear_housing', relative_to='robot/tool0')
     position = answer.pose.pose.position
     assert math.hypot(position.x, position.y) == pytest.approx(0.1)

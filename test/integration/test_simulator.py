@@ -19,7 +19,7 @@ pytestmark = pytest.mark.filterwarnings('ignore:failed to send response:RuntimeW
 def test_a_simulator_is_asked_for_the_models_that_can_move(bridge, tf):
     simulator = Simulator(tf, cart=3.0, arm=4.0, wall=5.0, cartoon=6.0)
     set_parameters(tf.listener, simulator=SIMULATOR, root_frame='map')
-    tf.listener.wait(lambda: tf.last.keys() >= {'cart/deck', 'arm/base'}, tf.last)
+    tf.wait_for_frames('cart/deck', 'arm/base')
     found = tf.last['cart/deck']
     assert (found.header.frame_id, found.header.stamp.sec > 5000) == ('map', True)
     assert (found.transform.translation.x, found.transform.translation.z) == (3.0, 0.5)
@@ -32,7 +32,7 @@ def test_a_simulator_is_asked_for_the_models_that_can_move(bridge, tf):
 
 def wait_for_line(tf, bridge, text):
     """Answer calls until the bridge has logged a line."""
-    tf.listener.wait(lambda: any(text in line for line in bridge.lines), bridge.lines)
+    tf.listener.wait(lambda: bridge.count_of(text), bridge.lines)
 
 
 @pytest.mark.parametrize(('simulator', 'prefix'), [
@@ -44,14 +44,14 @@ def test_names_of_entities_may_be_others(bridge, tf, simulator, prefix):
         tf, bridge, f'"arm" in the answers of {prefix}/get_entities_states; for "/World/cart", '
         'set simulator_entity to "/World/{model}"')
     set_parameters(tf.listener, simulator_entity='/World/{model}')
-    tf.listener.wait(lambda: tf.last.keys() >= {'cart/deck', 'arm/base'}, tf.last)
+    tf.wait_for_frames('cart/deck', 'arm/base')
     assert tf.last['cart/deck'].transform.translation.x == 3.0
 
 
 def test_a_nested_model_keeps_its_place_unless_it_has_a_pose(bridge, tf):
     simulator = Simulator(tf, cart=3.0)
     set_parameters(tf.listener, simulator=SIMULATOR, model_pose_topics=['/tracker/{model}/pose'])
-    tf.listener.wait(lambda: 'cart/crate/box' in tf.last, tf.last)
+    tf.wait_for_frames('cart/crate/box')
     assert pose_of(tf, 'cart::crate').x == 3.0
     wait_for_line(tf, bridge, 'does not give the poses of "cart::crate", which keep their places')
     tracker = Tracker(tf)
@@ -70,15 +70,15 @@ def test_other_entities_have_frames_while_they_exist(bridge, tf):
     set_parameters(
         tf.listener, simulator=SIMULATOR, simulator_others=True,
         simulator_entity='/World/{model}')
-    tf.listener.wait(lambda: 'spare/part' in tf.last, tf.last)
+    tf.wait_for_frames('spare/part')
     found = tf.last['spare/part']
     assert (found.header.frame_id, found.transform.translation.x) == ('world', 6.0)
     assert pose_of(tf, 'spare/part').x == 6.0
     simulator.entities['ball'] = simulator.entities.pop('/spare/part')
-    tf.listener.wait(lambda: 'ball' in tf.last, tf.last)
+    tf.wait_for_frames('ball')
     wait_for_line(tf, bridge, '1 frame no longer published, which TF listeners keep')
     tf.last.clear()
-    tf.listener.wait(lambda: tf.last.keys() >= {'ball', 'cart/deck'}, tf.last)
+    tf.wait_for_frames('ball', 'cart/deck')
     assert not tf.last.keys() & {'World/wall', 'World/cart', 'spare/part'}
     reload(tf.listener)
     assert pose_of(tf, 'ball').x == 6.0
@@ -92,10 +92,10 @@ def test_a_simulator_may_start_later_and_be_stopped(bridge, tf):
     simulator = Simulator(tf, Result.RESULT_INCORRECT_STATE, cart=3.0)
     tf.listener.wait(lambda: len(simulator.requests) > 2, 'calls')
     simulator.result = Result.RESULT_OK
-    tf.listener.wait(lambda: 'cart/deck' in tf.last, tf.last)
+    tf.wait_for_frames('cart/deck')
     bridge.wait_for_line(
         r'the simulator answers with result 3, which is not OK: paused\n[FATAL] at 5001')
-    assert sum('no poses of models' in line for line in bridge.lines) == 2
+    assert bridge.count_of('no poses of models') == 2
 
 
 def test_the_newest_of_two_sources_counts(bridge, tf):
@@ -103,16 +103,16 @@ def test_the_newest_of_two_sources_counts(bridge, tf):
     simulator = Simulator(tf, cart=3.0)
     set_parameters(
         tf.listener, simulator=SIMULATOR, model_pose_topics=['/tracker/{model}/pose'])
-    tf.listener.wait(lambda: 'cart/deck' in tf.last, tf.last)
+    tf.wait_for_frames('cart/deck')
     tracker.sec = simulator.sec + 1000
     words = f'"cart" come from several publishers at once on {SIMULATOR}/get_entities_states and'
 
     def is_told():
         tracker.move(4.0)
-        return any(words in line for line in bridge.lines)
+        return bridge.count_of(words)
 
     tf.listener.wait(is_told, bridge.lines)
     count = len(simulator.requests)
     tf.listener.wait(lambda: len(simulator.requests) > count + 3, 'calls')
     assert pose_of(tf, 'cart').x == 4.0
-    assert sum(words in line for line in bridge.lines) == 1
+    assert bridge.count_of(words) == 1

@@ -174,16 +174,14 @@ def no_comparison(monkeypatch):
     monkeypatch.setattr(topic_names, 'fnmatchcase', None)
 
 
-@pytest.mark.usefixtures('no_comparison')
-def test_patterns_that_would_take_too_long_are_refused():
+def test_patterns_that_would_take_too_long_are_refused(no_comparison):
     frame_ids = [f'{number}/{"a" * 300}' for number in range(40_000)]
     topics = pose_topics_from_patterns(frame_ids, [f'*{n}{"a" * 200}b' for n in range(1000)], '/n')
     assert topics.names == {}
     assert 'to compare 1000 patterns with 40000 frame ids takes too long' in topics.warning
 
 
-@pytest.mark.usefixtures('no_comparison')
-def test_many_names_without_wildcards_are_found_at_once():
+def test_many_names_without_wildcards_are_found_at_once(no_comparison):
     frame_ids = [f'{number}/{"a" * 300}' for number in range(40_000)]
     topics = pose_topics_from_patterns(frame_ids, [*frame_ids[:999], 'none'], '/n')
     assert list(topics.names) == frame_ids[:999]

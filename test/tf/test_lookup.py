@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Look-ups of poses by the names of SDF and of TF."""
 
-from matrices import assert_same_pose, matrix_from_degrees
+from matrices import assert_same_pose, matrix_from_degrees, OPTICAL
 import numpy as np
 import pytest
 from sdf_texts import joint, model_file, world_file
@@ -32,7 +32,6 @@ BASE = matrix_from_degrees(1, 2, 0, 0, 0, 90)
 EYE = BASE @ matrix_from_degrees(0.2, 0, 0.3, 0, 30, 0)
 GRIP = BASE @ matrix_from_degrees(0, 0, 1)
 SHELL = BASE @ matrix_from_degrees(0, 0, 0.5)
-OPTICAL = np.array([[0.0, 0, 1, 0], [-1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 
 
 def lookup_in(text, **options):

@@ -120,8 +120,7 @@ def test_what_moves_is_drawn_and_named_before_it_is_written(sized_page, shown):
     assert sized_page.run("document.querySelector('.moved')") is None
 
 
-@pytest.mark.usefixtures('page')
-def test_scene_is_seen_while_one_types_on_a_phone(tab, shown):
+def test_scene_is_seen_while_one_types_on_a_phone(page, tab, shown):
     tab.size(390, 844)
     tab.open(shown.address)
     select(tab, HOSTILE)
@@ -136,8 +135,7 @@ def test_scene_is_seen_while_one_types_on_a_phone(tab, shown):
       document.querySelector('canvas').getBoundingClientRect())""")
 
 
-@pytest.mark.usefixtures('page')
-def test_frame_is_moved_in_a_narrow_window_where_the_panel_is_folded(tab, shown):
+def test_frame_is_moved_in_a_narrow_window_where_the_panel_is_folded(page, tab, shown):
     tab.size(700, 600)
     tab.open(shown.address)
     tab.wait_for(
