@@ -12,14 +12,14 @@ import pytest
 
 
 @pytest.mark.parametrize(('columns', 'arguments'), [
-    (80, ('tree', '{cell}')), (120, ('tree', '{cell}')), (80, ('tree', '--scope', '{cell}')),
-    (80, ('poses', '{cell}', '--radians')), (80, ('poses', '--mm', '{cell}')),
-    (80, ('diff', '{moved}', '{cell}'))])
+    (80, 'tree {cell}'), (120, 'tree {cell}'), (80, 'tree --scope {cell}'),
+    (80, 'poses {cell} --radians'), (80, 'poses --mm {cell}'), (80, 'diff {moved} {cell}')])
 def test_lines_are_as_long_as_those_of_the_terminal(on_terminal, files, columns, arguments):
     cell = ROOT / 'examples/work_cell.sdf'
     moved = files / 'moved.sdf'
     moved.write_text(cell.read_text().replace('<pose>-1.2 -1.5 0', '<pose>-1.2 -1.6 0'))
-    text = on_terminal(columns, *(each.format(cell=cell, moved=moved) for each in arguments))
+    text = on_terminal(columns, *(
+        each.format(cell=cell, moved=moved) for each in arguments.split()))
     lines = [
         line for line in re.sub('\x1b\\[[0-9]*m', '', text).splitlines()
         # Where reading takes long, this says so, with a path that may be long.

@@ -155,17 +155,18 @@ def test_canonical_quaternions_are_returned_bit_for_bit(quat, scale):
 
 
 @pytest.mark.parametrize(('quat', 'canonical'), [
-    ((0.0, 0.0, 0.0, -3.0), (0.0, 0.0, 0.0, 1.0)),
-    ((-1.0, 0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0)),
-    ((0.0, -2.0, 0.0, -0.0), (0.0, 1.0, 0.0, 0.0)),
-    ((-0.0, 0.0, -1e-300, 0.0), (0.0, 0.0, 1.0, 0.0)),
-    ((0.0, -0.6, 0.8, 0.0), (0.0, 0.6, -0.8, 0.0)),
-    ((0.6, -0.8, 0.0, -0.0), (0.6, -0.8, 0.0, 0.0)),
-    ((5e-324, 0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0)),
+    ('0 0 0 -3', '0 0 0 1'),
+    ('-1 0 0 0', '1 0 0 0'),
+    ('0 -2 0 -0', '0 1 0 0'),
+    ('-0 0 -1e-300 0', '0 0 1 0'),
+    ('0 -0.6 0.8 0', '0 0.6 -0.8 0'),
+    ('0.6 -0.8 0 -0', '0.6 -0.8 0 0'),
+    ('5e-324 0 0 0', '1 0 0 0'),
 ])
 def test_the_first_component_of_a_half_turn_is_positive(quat, canonical):
-    assert canonical_quaternion(quat) == canonical
-    assert canonical_quaternion(np.array([quat])).tolist() == [list(canonical)]
+    given, expected = ([*map(float, text.split())] for text in (quat, canonical))
+    assert canonical_quaternion(given) == tuple(expected)
+    assert canonical_quaternion(np.array([given])).tolist() == [expected]
 
 
 @pytest.mark.parametrize('rpy', [(-0.0, -0.0, -0.0), (0.0, -0.0, 1.0), (math.pi, -0.0, -0.0)])
