@@ -172,19 +172,16 @@ def _axis(
     if xyz is not None and xyz.keys():
         expressed_in = Reference(attribute_of(xyz, 'expressed_in'), sources.line(xyz))
     x, y, z = numbers_of(xyz, (0.0, 0.0, 1.0))
-    lower, upper = -math.inf, math.inf
-    limit = children.get('limit')
-    if limit is not None:
-        limits = first_children(limit)
-        (lower,) = numbers_of(limits.get('lower'), (lower,))
-        (upper,) = numbers_of(limits.get('upper'), (upper,))
-        if lower > upper:
-            sources.warning(limit, f'the lower limit {lower:g} is above the upper one, {upper:g}')
-        if any(map(_may_be_degrees, (lower, upper))) and _has_dof(
-                attribute_of(joint, 'type').lower(), Motion.TURN):
-            msg = (f'the limits {lower:g} to {upper:g} of joint "{attribute_of(joint, "name")}" '
-                   'are radians; they look like degrees')
-            sources.warning(limit, msg)
+    lower = number_of_child(axis, 'limit/lower', -math.inf)
+    upper = number_of_child(axis, 'limit/upper', math.inf)
+    if lower > upper:
+        msg = f'the lower limit {lower:g} is above the upper one, {upper:g}'
+        sources.warning(children['limit'], msg)
+    if any(map(_may_be_degrees, (lower, upper))) and _has_dof(
+            attribute_of(joint, 'type').lower(), Motion.TURN):
+        msg = (f'the limits {lower:g} to {upper:g} of joint "{attribute_of(joint, "name")}" are '
+               'radians; they look like degrees')
+        sources.warning(children['limit'], msg)
     dynamics = _dynamics(axis) if reads_dynamics else ()
     return AxisDetails(
         JointAxis((x, y, z), lower, upper, None, *dynamics), expressed_in,

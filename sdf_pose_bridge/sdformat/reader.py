@@ -113,7 +113,8 @@ class ElementReader:
         self._undefined = UndefinedReporter(sources)
         self._readers_of_details: dict[Kind, tuple[str, Callable[[XmlElement], Any]]] = {
             Kind.MODEL: ('models', _model_details),
-            Kind.FRAME: ('frames', partial(_frame_details, sources=sources)),
+            Kind.FRAME: ('frames', lambda xml: FrameDetails(
+                frame_of_attribute(xml, 'attached_to'), sources.origin(xml).placement_frame)),
             Kind.JOINT: ('joints', partial(
                 joint_details_from_element, sources=sources, reads_dynamics=shapes)),
             Kind.SENSOR: ('sensors', partial(
@@ -362,8 +363,3 @@ def _model_details(xml: XmlElement) -> ModelDetails:
 def _described_value(xml: XmlElement) -> str:
     value = shortened(text_of(xml))
     return f'"{value}" of <{written_tag(xml)}>' if value else f'<{written_tag(xml)}>'
-
-
-def _frame_details(xml: XmlElement, sources: Sources) -> FrameDetails:
-    return FrameDetails(
-        frame_of_attribute(xml, 'attached_to'), sources.origin(xml).placement_frame)

@@ -141,10 +141,9 @@ class Sources:
         self.usage.add('copied_elements', count, self.place(user) if is_refused else Place(''))
 
     def add_path(self, path: str) -> None:
-        """Add a file, unless it is known."""
-        if path not in self.file_indices:
-            self.file_indices[path] = len(self.paths)
-            self.paths.append(path)
+        """Add a file, which is read once."""
+        self.file_indices[path] = len(self.paths)
+        self.paths.append(path)
 
     def add_tree(self, path: str, root: XmlElement, lines: Mapping[XmlElement, int]) -> None:
         """Add the tree of a file, and the lines of elements that lxml does not know."""

@@ -157,18 +157,14 @@ def _is_of_type(text: str, numbers: Sequence[float], value_type: ValueType) -> b
         if not min(count, 3) <= len(numbers) <= count:
             return False
         if value_type is ValueType.FLOAT:
-            return _is_single_precision(numbers[0])
+            # C's strtof reads others with a range error.
+            size = abs(numbers[0])
+            return not (0.0 < size < _SMALLEST_FLOAT or _LARGEST_FLOAT < size < math.inf)
         return value_type is not ValueType.COLOR or not [
             number for number in numbers if number < 0.0 or number > 1.0]
     if value_type is ValueType.BOOLEAN:
         return boolean_from_text(text) is not None
     return value_type is not ValueType.FRAME or text != ROOT_FRAME
-
-
-def _is_single_precision(number: float) -> bool:
-    """Return whether C's ``strtof`` reads a number without a range error."""
-    return not math.isfinite(number) or number == 0.0 or (
-        _SMALLEST_FLOAT <= abs(number) <= _LARGEST_FLOAT)
 
 
 def numbers_from_text(text: str, value_type: ValueType) -> Sequence[float]:

@@ -34,7 +34,6 @@ from sdf_pose_bridge.tf.tree import DEFAULT_KINDS, elements_in_model, tf_tree_fr
 NO_LIMIT = 1e16
 """The usual value in URDF and Gazebo for no limit."""
 
-
 _LONGEST_NAMES = 50_000_000
 """Largest length of all names in a URDF together. The scoped names of a small file can have any
 length, and a text is copied several times before it is written."""

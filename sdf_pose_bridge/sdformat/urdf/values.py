@@ -19,7 +19,6 @@ _URDFDOM_GIMBAL_LOCK = 1e-5
 _GZ_MATH_GIMBAL_LOCK = 1e-15
 """If 1 - abs(sin(pitch)) is less, libsdformat writes angles that are only nearly the same."""
 
-
 Numbers: TypeAlias = Mapping[str, Sequence[float]]
 """Numbers by the names of attributes in URDF, or of child elements in SDFormat."""
 
