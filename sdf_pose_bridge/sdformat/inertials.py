@@ -52,7 +52,9 @@ class Inertial(NamedTuple):
             return False
         xx, yy, zz, xy, xz, yz = self.moments_kg_m2
         tolerance = _TOLERANCE * 0.5 * (xx + yy + zz)
-        smallest, middle, largest = np.linalg.eigvalsh(matrix_from_moments(self.moments_kg_m2))
+        smallest, middle, largest = (
+            np.linalg.eigvalsh(matrix_from_moments(self.moments_kg_m2)).tolist()
+            if xy or xz or yz else sorted((xx, yy, zz)))
         # The rounding is that of gz-math (Matrix3::Determinant).
         determinant = (
             (zz * yy - yz * yz) * xx - (zz * xy - xz * yz) * xy + (yz * xy - xz * yy) * xz)
