@@ -177,17 +177,16 @@ class JointPositions:
 
     def unreported(self) -> tuple[list[str], list[str]]:
         """
-        Find what has no known coordinates.
+        Find what has no known coordinates, of all that messages can name.
 
         :return: a name of each such joint that does not follow another, and the names of such
             free models.
         """
-        joints: dict[int, str] = {}
-        models = []
+        joints, models, named = dict[int, str](), list[str](), {*self._indices[''].values()}
         for dof in np.flatnonzero(self._is_leader & ~self.is_known).tolist():
             if self.is_model(dof):
                 models.append(self.names[dof])
-            else:
+            elif dof in named:
                 joints.setdefault(self._motion.elements[dof], self.names[dof])
         return list(joints.values()), models
 

@@ -120,13 +120,12 @@ def test_topics_that_are_no_longer_wanted_are_returned(sources, node):
 
 def test_another_simulator_replaces_the_one_before(sources, node):
     pytest.importorskip('simulation_interfaces', reason='needs simulation_interfaces')
-    for names, others in ((['one'], True), (['two'], True), ([], False)):
+    for name in ('one', 'two', ''):
         settings = settings_from_values({
-            'sdf_file': 'a.sdf', 'simulator': names[0] if names else '',
-            'simulator_others': others})
+            'sdf_file': 'a.sdf', 'simulator': name, 'simulator_others': bool(name)})
         sources.follow(StateTopics({}), settings, POSITIONS)
-        assert [each.name for each in sources.sources.sources] == [
-            f'/{name}/get_entities_states' for name in names]
+        names = [each.name for each in sources.sources.sources]
+        assert names == [f'/{name}/get_entities_states'] * bool(name)
         assert len([*node.clients]) == 2 * len(names)
 
 

@@ -106,6 +106,12 @@ def test_names_inside_one_model_are_not_those_of_others():
     assert positions.hint('jj', 'y') == '; did you mean "j"?'
 
 
+def test_joints_that_no_message_can_name_are_not_missing():
+    text = world_file(f'{model("x")}{model("y")}</world><world name="v">{model("z")}')
+    assert positions_of(text).unreported() == (['x/j', 'y/j'], [])
+    assert positions_of(text, 'y').unreported() == (['y/j'], [])
+
+
 def test_a_joint_with_several_degrees_of_freedom_is_missing_once():
     positions = positions_in_model(LINKS + joint(ENDS, 'j', 'ball'))
     assert positions.unreported() == (['j_yaw'], [])
