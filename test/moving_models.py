@@ -22,7 +22,7 @@ TEXT = world_file(
     + '<model name="b"><pose>0 3 0 0 0 0</pose><link name="l"/>'
     '<plugin filename="f" name="gz::sim::systems::DiffDrive"/></model></model>'
     '<model name="fixed"><static>true</static><pose>0 2 0 0 0 0</pose><link name="l"/></model>')
-TURNED = (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)
+POSE = (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)
 
 
 class Models:
@@ -39,7 +39,7 @@ class Models:
             placement)
         self.source = StateSource(node, '/poses')
 
-    def read(self, child='a', frame_id='', pose=TURNED, stamp_ns=5, model=None):
+    def read(self, child='a', frame_id='', pose=POSE, stamp_ns=5, model=None):
         """Return the messages of a pose, for a model or for the one that the child names."""
         dof = None if model is None else self.effects.models[model]
         return messages_from_poses(

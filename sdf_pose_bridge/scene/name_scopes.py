@@ -103,7 +103,7 @@ class NameScopes:
             rest = reference[len(first) + len(SEPARATOR):]
             return (f'; inside a model its own name is not visible, write '
                     f'"{rest or MODEL_FRAME}"')
-        if reference == WORLD_FRAME:  # a world has this frame
+        if reference == WORLD_FRAME:  # a world has this frame, so this is a model
             return ('; in a model only joints can name the world, and the <pose> of the model '
                     'itself is relative to it')
         scoped = reference.replace('/', SEPARATOR)

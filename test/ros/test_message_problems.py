@@ -4,7 +4,7 @@
 
 from deadline import wait_until
 from geometry_msgs.msg import PoseStamped
-from moving_models import Models, TURNED
+from moving_models import Models, POSE
 import pytest
 
 from sdf_pose_bridge.ros.cdr import StampedPose
@@ -35,7 +35,7 @@ def look(make_node):
                 source.number = number
                 source.messages = lambda effects, source=source, child=child: (
                     messages_from_poses(
-                        [StampedPose(5, '', child, TURNED)], source, effects))
+                        [StampedPose(5, '', child, POSE)], source, effects))
                 source.take(models.effects, {})
             problems.look_at_publishers(models.effects.known)
         return problems.lines([])

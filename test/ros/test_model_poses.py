@@ -5,7 +5,7 @@
 import math
 
 from geometry_msgs.msg import PoseStamped
-from moving_models import Models, TURNED
+from moving_models import Models, POSE
 import numpy as np
 import pytest
 from rclpy.serialization import serialize_message
@@ -19,8 +19,8 @@ from sdf_pose_bridge.ros.state_messages import MOST_BYTES
 from sdf_pose_bridge.ros.state_topic import StateTopic, TopicKey
 from sdf_pose_bridge.tf.odometry import Odometry
 
-QUARTER = (*TURNED[:3], *quaternion_from_rpy((0.0, 0.0, math.pi / 2.0)))
-"""The same place, after a quarter turn."""
+QUARTER = (*POSE[:3], *quaternion_from_rpy((0.0, 0.0, math.pi / 2.0)))
+"""That pose after a quarter turn about z."""
 
 
 @pytest.fixture
@@ -33,7 +33,7 @@ def models(make_node):
 def test_models_have_their_names_and_their_frame_ids(models, child, name):
     (message,) = models.read(child)
     assert [models.positions.names[dof] for dof in message.effect.selection.dofs] == [name]
-    assert message.values.tolist() == [list(TURNED)]
+    assert message.values.tolist() == [list(POSE)]
     assert models.read(child)[0].effect is message.effect
 
 
@@ -48,10 +48,10 @@ def test_frames_that_mean_the_root(models, frame_id):
     ({'frame_id': 'odom'}, '/poses has poses in "odom", which are ignored: there is no such'),
     ({'frame_id': f'{"x" * 255}/odom'}, '/odom", which are ignored: there is no such'),
     ({'frame_id': 'p/a/k'}, '/poses has poses in "p/a/k", which are ignored: such a frame moves'),
-    *(({'pose': (*TURNED[:3], *quat)}, 'has no quaternion of length 1') for quat in (
+    *(({'pose': (*POSE[:3], *quat)}, 'has no quaternion of length 1') for quat in (
         (0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.02), (0.0, 0.0, float('nan'), 1.0),
         (float('inf'), 0.0, 0.0, 0.0))),
-    *(({'pose': (x, *TURNED[1:])}, 'or a position that is not finite or beyond 1e+09') for x in (
+    *(({'pose': (x, *POSE[1:])}, 'or a position that is not finite or beyond 1e+09') for x in (
         float('nan'), float('-inf'), 1e10)),
 ])
 def test_a_pose_that_cannot_be_used_is_reported_once(models, capfd, fields, line):
@@ -120,10 +120,10 @@ def test_a_placement_that_no_model_has_is_reported(make_node, capfd):
 
 
 def test_poses_of_links_say_nothing_unless_the_pose_of_the_model_is_there(models, capfd):
-    links = [StampedPose(5, 'p/a', child, TURNED) for child in ('p/a/l', 'p/a/k')]
-    model = StampedPose(5, 'w', 'a', TURNED)
+    links = [StampedPose(5, 'p/a', child, POSE) for child in ('p/a/l', 'p/a/k')]
+    model = StampedPose(5, 'w', 'a', POSE)
     (message,) = messages_from_poses([*links, model], models.source, models.effects)
-    assert message.values.tolist() == [list(TURNED)]
+    assert message.values.tolist() == [list(POSE)]
     words = 'PosePublisher sends poses of models with <publish_model_pose>'
     assert words not in capfd.readouterr().err
     assert not messages_from_poses(links, models.source, models.effects)
@@ -132,7 +132,7 @@ def test_poses_of_links_say_nothing_unless_the_pose_of_the_model_is_there(models
 
 
 def test_a_quaternion_that_is_nearly_unit_is_made_unit(models):
-    (message,) = models.read(pose=(*TURNED[:3], 0.0, 0.0, 0.0, -1.009))
+    (message,) = models.read(pose=(*POSE[:3], 0.0, 0.0, 0.0, -1.009))
     assert message.values[0, 3:].tolist() == [0.0, 0.0, 0.0, 1.0]
 
 
@@ -159,7 +159,7 @@ def test_frame_ids_are_looked_up_once_and_for_a_limited_time_in_a_message(models
     monkeypatch.setattr('time.thread_time', lambda: now)
     models.effects.lookup.knows = knows
     frame_ids = [*'abcdefg', 'p/fixed/l']
-    poses = [StampedPose(5, each, 'a', TURNED) for each in frame_ids]
+    poses = [StampedPose(5, each, 'a', POSE) for each in frame_ids]
     found = [messages_from_poses(poses, models.source, models.effects) for _ in range(4)]
     assert looked_up == frame_ids
     assert [len(each) for each in found] == [0, 0, 1, 1]
@@ -179,7 +179,7 @@ def test_the_meanings_of_frame_ids_take_a_limited_number_of_bytes(models):
 
 def test_poses_in_one_frame_with_one_stamp_are_one_message(models):
     poses = [
-        StampedPose(stamp_ns, frame_id, child, (x, *TURNED[1:]))
+        StampedPose(stamp_ns, frame_id, child, (x, *POSE[1:]))
         for x, child, stamp_ns, frame_id in (
             (1.0, 'a::b', 5, ''), (2.0, 'a', 5, 'w'), (3.0, 'a', 6, ''), (4.0, 'a', 5, ''),
             (5.0, 'a::b', 5, 'p/fixed/l'), (6.0, 'a', 5, 'p/fixed/l'))]
