@@ -170,10 +170,10 @@ pictures: setup
 
 # What they need is fetched into .underlay-release at first; then they use no network.
 wheel_check: setup
-	@$(in_shell) python release/check.py --only-installs
+	@. underlay/setup.bash && PYTHONPATH=underlay:$$PYTHONPATH exec python release/check.py --only-installs
 
 release_check: setup
-	@$(in_shell) python release/check.py
+	@. underlay/setup.bash && PYTHONPATH=underlay:$$PYTHONPATH exec python release/check.py
 
 release: setup
 	@$(in_shell) python release/make_release.py '$(VERSION)'

@@ -20,6 +20,8 @@ import sys
 import tempfile
 import xml.etree.ElementTree as ET
 
+from caller import environment_of_caller
+from make_release import environment_of_git
 import yaml
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -33,9 +35,6 @@ PLATFORMS = (
     ('kilted', 'ubuntu', 'noble'), ('kilted', 'rhel', '9'),
     ('lyrical', 'ubuntu', 'resolute'), ('lyrical', 'rhel', '10'))
 """Distribution, system and version, for which the build farm builds packages."""
-FOREIGN_VARIABLES = re.compile(
-    'PYTHON|PIP_(PREFIX|PYTHON|REQUIRE_VIRTUALENV|ROOT|TARGET|USER)|VIRTUAL_ENV|(AMENT|CMAKE|COLCON'
-    '|_?ROS)_|LD_LIBRARY_PATH')
 PLACEHOLDERS = ('<owner>', 'example.org')
 
 
@@ -50,9 +49,8 @@ def run(*command: object, cwd: Path = ROOT, **environment: str) -> str:
     :return: what it prints.
     :raises CheckError: if it fails.
     """
-    kept = {
-        name: value for name, value in os.environ.items()
-        if not FOREIGN_VARIABLES.match(name)}
+    kept = environment_of_caller(environment_of_git())
+    kept.pop('LD_LIBRARY_PATH', None)
     done = subprocess.run(
         list(map(str, command)), cwd=cwd, env={**kept, **environment}, text=True, check=False,
         stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
@@ -134,8 +132,9 @@ class Release:
 
     def is_made(self) -> str:
         """Make the commit, the tags and the branch."""
-        run('git', 'config', 'user.name', 'release check', cwd=self._clone)
-        run('git', 'config', 'user.email', 'check@localhost', cwd=self._clone)
+        for name, value in (('user.name', 'release check'), ('user.email', 'check@localhost'),
+                            ('commit.gpgSign', 'false'), ('tag.gpgSign', 'false')):
+            run('git', 'config', name, value, cwd=self._clone)
         run(TOOLS / 'python', 'release/make_release.py', self._version, cwd=self._clone)
         for tag, package in self._tags():
             run('git', 'worktree', 'add', '--quiet', '--detach', self._scratch / package, tag,

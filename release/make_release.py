@@ -10,6 +10,7 @@ branch of their own, where they are the root.
 import argparse
 from collections.abc import Sequence
 from datetime import datetime, timezone
+import os
 from pathlib import Path
 import re
 import subprocess
@@ -31,6 +32,14 @@ class RefusalError(Exception):
     """The reason, in a sentence, why there is no release."""
 
 
+def environment_of_git() -> dict[str, str]:
+    """Return the caller's variables without those of a repository, which a hook of git has."""
+    listed = subprocess.run(
+        ['git', 'rev-parse', '--local-env-vars'], capture_output=True, text=True, check=True)
+    names = listed.stdout.split()
+    return {name: value for name, value in os.environ.items() if name not in names}
+
+
 def git(*arguments: str) -> str:
     """
     Run git in the repository.
@@ -39,7 +48,8 @@ def git(*arguments: str) -> str:
     :raises RefusalError: if it fails.
     """
     done = subprocess.run(
-        ['git', *arguments], cwd=ROOT, capture_output=True, text=True, check=False)
+        ['git', *arguments], cwd=ROOT, env=environment_of_git(), capture_output=True, text=True,
+        check=False)
     if done.returncode:
         msg = f'"git {" ".join(arguments)}" fails: {done.stderr.strip()}'
         raise RefusalError(msg)

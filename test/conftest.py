@@ -1,13 +1,15 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Fixtures of tests with ROS, settings of property tests, and the number of parallel processes."""
+"""The environment of tests, fixtures with ROS, settings of property tests, parallel processes."""
 
 from importlib.metadata import version
 import importlib.util
 import os
 from pathlib import Path
+import tempfile
 
 from lxml import etree
+from own_environment import environment_of_tests
 import pytest
 from ros_domain import environment_with_domain
 from sizes import size
@@ -15,7 +17,7 @@ from sizes import size
 try:
     from hypothesis import HealthCheck, settings
 except ImportError:  # the tests that need it are skipped
-    pass
+    os.environ.clear()
 else:
     # A machine that has other work to do may take long for an example.
     settings.register_profile(
@@ -23,6 +25,15 @@ else:
     settings.register_profile(
         'few_examples', settings.get_profile('all_examples'), max_examples=20)
     settings.load_profile(size('few_examples', 'all_examples'))
+
+
+def pytest_configure(config):
+    """Give tests an environment of their own, before their modules import ROS."""
+    home = tempfile.TemporaryDirectory(prefix='sdf_pose_bridge_home_')
+    config.add_cleanup(home.cleanup)
+    environment = environment_of_tests(os.environ, home.name)
+    os.environ.clear()
+    os.environ.update(environment)
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A release is made whole, or not at all and for a reason."""
 
+import os
 from pathlib import Path
 import shutil
 import sys
@@ -62,8 +63,9 @@ def release(git, tmp_path):
     if not Path(git('--exec-path'), 'git-subtree').exists():
         pytest.skip('needs "git subtree"')
 
-    def run(version):
-        return completed([sys.executable, 'release/make_release.py', version], cwd=tmp_path)
+    def run(version, **environment):
+        return completed([sys.executable, 'release/make_release.py', version], cwd=tmp_path,
+                         env={**os.environ, **environment})
     return run
 
 
@@ -110,6 +112,13 @@ def test_all_places_have_the_version(release, git, tmp_path, version):
         version}
     assert git('status', '--porcelain') == ''
     assert git('log', '-1', '--format=%s', version) == version
+
+
+def test_release_in_a_hook_of_another_repository(release, git, repository):
+    of_hook = {'GIT_DIR': str(repository / '.git'), 'GIT_WORK_TREE': str(repository)}
+    assert release('1.0.0', **of_hook).returncode == 0
+    assert git('tag').split() == ['1.0.0', 'interfaces-1.0.0']
+    assert git_in(repository)('tag') == ''
 
 
 def test_forthcoming_changes_get_version_and_date(release, git, tmp_path):

@@ -30,6 +30,7 @@ import sysconfig
 from types import FrameType
 from typing import NamedTuple
 
+from caller import environment_of_caller
 import machine
 from steps import CommandError, RefusalError, Steps
 
@@ -59,12 +60,6 @@ MISSING_PACKAGES = {
 BRIDGE = 'sdf_pose_bridge'
 COMMAND_LINE = 'sdf_pose'
 INTERFACES = 'sdf_pose_bridge_interfaces'
-# Left out of the commands' environment: each would make them find another Python or another ROS,
-# or install modules that have to be compiled at every start.
-FOREIGN_VARIABLES = re.compile(
-    r'MAKE.*|MFLAGS|VIRTUAL_ENV|PYTHON(DONTWRITEBYTECODE|HOME|PATH|STARTUP)'
-    r'|PIP_(PREFIX|PYTHON|REQUIRE_VIRTUALENV|ROOT|TARGET|USER)'
-    r'|(AMENT|CMAKE|COLCON|RMW|_?ROS)_.*')
 BUILD_MACHINE_PREFIX = re.compile(r'/opt/python/cp3\d+-cp3\d+/(include|lib)/python3\.\d+')
 # What a failed command printed, and what it means; the first that fits is said.
 FAILURES = {
@@ -161,9 +156,7 @@ class Underlay:
             (('build',), tuple(name.replace('-', '_') for name in wheels)) if self._from_pypi
             else (('tools',),))
         self._locks = [[HERE / f'{name}.txt' for name in group] for group in groups]
-        self._env = {
-            name: value for name, value in os.environ.items()
-            if not FOREIGN_VARIABLES.fullmatch(name)}
+        self._env = environment_of_caller(os.environ)
         self._env['PYTHONNOUSERSITE'] = '1'
         # Instead of the user's own settings of colcon, which could build or install elsewhere.
         self._env['COLCON_HOME'] = str(UNDERLAY / 'colcon')

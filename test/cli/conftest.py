@@ -82,8 +82,6 @@ def on_terminal(files):
 def run_main(files, monkeypatch, capsys):
     """Runs the command line in that folder, but in this process."""
     monkeypatch.chdir(files)
-    for name in ('GZ_SIM_RESOURCE_PATH', 'SDF_PATH'):
-        monkeypatch.delenv(name, raising=False)
 
     def run(*arguments, stdin=os.devnull):
         before = os.dup(0)

@@ -62,7 +62,7 @@ def test_git_shows_what_a_commit_moved(files):
     def git(*arguments):
         return completed(
             ['git', '-c', 'user.name=a', '-c', 'user.email=b', *arguments], cwd=files,
-            env={**os.environ, 'PYTHONPATH': str(ROOT), 'GIT_CONFIG_GLOBAL': os.devnull},
+            env={**os.environ, 'PYTHONPATH': str(ROOT)},
             check=True).stdout
 
     git('init', '-q')
