@@ -80,9 +80,10 @@ def default_references(
     :param attachments: the frame that each frame is attached to, of a joint its child; -1 for
         none.
     :return: the child of a joint, the attachment of an explicit frame, the parent of any other
-        element; -1 for worlds and implicit roots, and for a joint without a child.
+        element, also of a joint whose child is missing; -1 for worlds and implicit roots.
     """
-    return np.where(np.isin(kinds, (Kind.JOINT, Kind.FRAME)), attachments, parents)
+    is_attached = np.isin(kinds, (Kind.JOINT, Kind.FRAME)) & (attachments != NO_ELEMENT)
+    return np.where(is_attached, attachments, parents)
 
 
 class _Builder:
@@ -139,8 +140,10 @@ class _Builder:
             if not details.is_static:
                 attachments[model] = canonical[model]
         for frame, frame_details in elements.frames.items():
+            name = frame_details.attached_to
+            # The scope instead of a frame that is not there could close a cycle.
             attachments[frame] = self._frame(
-                frame, frame_details.attached_to, self._scopes.scope_of[frame], 'attached_to')
+                frame, name, NO_ELEMENT if name else self._scopes.scope_of[frame], 'attached_to')
         return attachments
 
     def _canonical_pointers(self) -> dict[int, int]:
@@ -269,6 +272,7 @@ class _Builder:
         self, pointers: Indices, error_class: type[SdfError], verb: str,
     ) -> None:
         """Report each cycle at its first element in the file, and clear its pointers."""
+        is_of_poses = error_class is RelativeToCycleError
         for cycle in cycles_from_pointers(pointers):
             start = cycle.index(min(cycle))
             first = cycle[start]
@@ -278,9 +282,9 @@ class _Builder:
             if len(shown) > _LONGEST_CYCLE_SHOWN:
                 shown = [*shown[:6], f'... ({len(shown) - 11} more)', *shown[-5:]]
             msg = f'this is {verb} itself: {" -> ".join(shown)}'
-            if error_class is RelativeToCycleError and any(
+            if is_of_poses and any(
                     index in self._elements.joints and index not in self._elements.relative_to
                     for index in cycle):
                 msg += '; the default reference of a joint is its child'
-            place = self._elements.place(first, int(self._elements.pose_lines[first]))
-            self._problems.error(error_class(msg, place))
+            line = int(self._elements.pose_lines[first]) if is_of_poses else 0
+            self._problems.error(error_class(msg, self._elements.place(first, line)))

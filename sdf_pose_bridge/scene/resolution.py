@@ -209,6 +209,9 @@ def poses_in_references(elements: Elements, graph: FrameGraph) -> PoseArray:
         frame = graph.placements[model]
         steps = []
         while frame != model:
+            if frame == NO_ELEMENT:  # as an index, it would be that of the last element
+                msg = f'the placement frame of "{graph.names[model]}" is not in it'
+                raise RuntimeError(msg)
             steps.append(frame)
             frame = known[frame][0] if frame in known else int(graph.references[frame])
         in_model = Pose()

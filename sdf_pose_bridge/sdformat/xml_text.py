@@ -11,8 +11,9 @@ TinyXML-2 knows the five predefined entities and reads any other ``&`` as text. 
 attribute values, ``]]>`` in text, two hyphens in comments, attributes without white space between
 them, white space behind ``<``, bytes that are not UTF-8, and any XML version and encoding. It
 accepts characters that XML does not have; they are replaced here. It skips text before the
-outermost element, and everything behind it that is not text alone. It stops at an end tag without
-a start tag. Lines are kept.
+outermost element, and everything behind it that is not text alone. Of several outermost elements,
+libsdformat reads the first ``<sdf>``, else the first ``<robot>``. It stops at an end tag without a
+start tag. Lines are kept.
 """
 
 from __future__ import annotations
@@ -56,6 +57,10 @@ _REPLACEMENT = '\ufffd'
 _LONGEST_REFERENCE = 9
 """Largest number of digits of a character reference that are read, without leading zeros; no
 character has as many."""
+
+
+_RANKS = {'sdf': 2, 'robot': 1}
+"""Of several outermost elements, the first one of the highest rank is read."""
 
 
 class _Replacement(NamedTuple):
@@ -146,7 +151,8 @@ class _Repairer:
         escaped = text.decode('utf-8', errors='surrogateescape')
         decoded = self._replaced(escaped, _ESCAPED_BYTES).partition('\0')[0]
         parts = []
-        position = 0
+        is_mismatched = False  # which libxml2 finds in the element that is read
+        position = highest_rank = 0
         while position < len(decoded):
             token = _TOKEN.match(decoded, position)
             rest = _rest_of_tag(token) if token is not None and token['tag'] else token
@@ -165,12 +171,21 @@ class _Repairer:
                 self._note('an end tag without a start tag; the text behind it is not read')
                 break
             else:
+                rank = _RANKS.get(token['tag'], 0)
+                if not self._open and rank > highest_rank:
+                    highest_rank = rank
+                    if self._is_after_root:
+                        if is_mismatched:
+                            return None
+                        self._note('elements beside the outermost element')
+                        parts, self._is_after_root = [_blank(''.join(parts))], False
                 parts.append(self._repaired_tag(token, rest))
                 if not token['end'] and not rest['empty']:
                     self._open.append(token['tag'])
-                elif token['end'] and self._open and (
-                        self._open.pop() != token['tag'] and self._is_after_root):
-                    return None
+                elif token['end'] and self._open and self._open.pop() != token['tag']:
+                    if self._is_after_root:
+                        return None
+                    is_mismatched = True
                 self._is_after_root |= not self._open
             self._line += decoded.count('\n', begin, position)
         # None if there is no element, or if one after the outermost element has no end.
@@ -210,7 +225,7 @@ class _Repairer:
 
     def _repaired_tag(self, token: re.Match[str], rest: re.Match[str]) -> str:
         if self._is_after_root:
-            self._note('elements after the outermost element')
+            self._note('elements beside the outermost element')
             return _blank(token.string[token.start():rest.end()])
         # White space behind the name is allowed.
         parts = [f'<{token["end"]}{token["tag"]}{_blank(token["space"])}']

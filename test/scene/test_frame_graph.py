@@ -114,6 +114,12 @@ def test_unknown_reference_of_a_pose_is_refused(text):
     assert '"zzz"' in error.message
 
 
+def test_unknown_attachment_closes_no_cycle():
+    assert codes_of(with_canonical_link(
+        A + '<frame name="g" attached_to="zzz"/>' + fixed_joint('f', 'a', 'g'))) == [
+            'FRAME_ATTACHED_TO_INVALID']
+
+
 def test_unknown_name_gives_no_other_errors():
     text = model_file("""
         <link name="a"/>
@@ -158,6 +164,11 @@ def test_cycle_is_reported_once_at_its_first_element():
     error = only_error(model_file(A + '\n' + frames))
     assert error.line == 5
     assert error.element == '/sdf/model[@name="m"]/frame[@name="p"]'
+
+
+def test_cycle_of_attachments_is_reported_at_the_element_not_its_pose():
+    error = only_error(with_a(LOOP.replace('"g"/>', '"g">\n<pose/></frame>')))
+    assert error.line == 1
 
 
 def test_every_cycle_is_reported():

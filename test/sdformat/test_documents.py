@@ -3,7 +3,7 @@
 """Reading files into trees: the outermost element, its version, the top model's pose."""
 
 import pytest
-from sdf_texts import assert_at, codes_of, LINK, model_file, only_error
+from sdf_texts import assert_at, codes_of, LINK, model_file, names_of, only_error
 
 from sdf_pose_bridge import load_text
 
@@ -23,6 +23,13 @@ def test_other_outermost_element_is_refused(text, code, named):
     error = only_error(f'\n{text}')
     assert (error.code, error.line) == (code, 2)
     assert named in error.message
+
+
+def test_elements_beside_the_outermost_one_are_told():
+    scene = load_text('<robot/>\n' + model_file(LINK))
+    assert names_of(scene) == ['m', 'm::l']
+    assert 'elements beside the outermost element' in scene.warnings[0].message
+    assert scene.warnings[0].place.line == 2
 
 
 def test_error_has_the_outermost_element():

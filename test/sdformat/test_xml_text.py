@@ -21,7 +21,7 @@ def root_of(text):
 @pytest.mark.parametrize('text', [
     b'<a', b'<a b=c/>', b'<a><b c></b></a>', b'<a/>text', b'<a><?late?></a>', b'<a/><?late?>',
     b'<!-- <a/>', b'<a><![CDATA[</a>', b'<a/><b>', b'<a/><b></c>', b'<a/><b><c></b></c>',
-    b'<a/><?late?></b>', b'<a></ a>',
+    b'<a/><?late?></b>', b'<a></ a>', b'<a><b></a></b><sdf/>', b'<a/><sdf/>text',
 ])
 def test_text_that_libsdformat_refuses_is_not_repaired(text):
     assert repaired(text) is None
@@ -51,6 +51,17 @@ def test_text_that_libsdformat_refuses_is_not_repaired(text):
 def test_text_of_the_outermost_element(text, content):
     root = root_of(text)
     assert (root.tag, root.text) == ('a', content)
+
+
+@pytest.mark.parametrize(('text', 'tag', 'line'), [
+    (b'<a>b</a>\n<sdf/>', 'sdf', 2), (b'<robot/>\n<a/>\n<sdf/>', 'sdf', 3),
+    (b'<a/>\n<robot/><a/>', 'robot', 2), (b'<sdf/>\n<robot/><sdf/>', 'sdf', 1),
+    (b'<a><sdf/></a>\n<b/>', 'a', 1), (b'<!DOCTYPE a>\n<a/><sdf/>', 'sdf', 2),
+])
+def test_outermost_element_that_is_read(text, tag, line):
+    root = root_of(text)
+    assert (root.tag, root.sourceline) == (tag, line)
+    assert [fault for _, fault in repaired(text)[1]] == ['elements beside the outermost element']
 
 
 @pytest.mark.parametrize(('text', 'value'), [
