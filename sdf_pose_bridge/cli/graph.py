@@ -12,7 +12,6 @@ import argparse
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from itertools import chain
-import os
 from pathlib import Path
 import shutil
 import subprocess
@@ -31,6 +30,7 @@ from sdf_pose_bridge.cli.printing import CommandError, write_text
 from sdf_pose_bridge.names import printable, shortened
 from sdf_pose_bridge.process_limits import lift_limits
 from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.file_change import replace_file
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.tree import elements_in_model
 
@@ -76,7 +76,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Draw the graph of a file; return 0."""
     scene = scene_of(options.files[0], options)
-    _write(dot_from_scene(scene, options.kinds, options.model), options.output)
+    _write(dot_from_scene(scene, options.kinds, options.model), options.output, scene.files)
     return 0
 
 
@@ -145,18 +145,19 @@ def _escaped(name: str) -> str:
     return printable(shortened(name)).replace('\\', '\\\\').replace('"', '\\"')
 
 
-def _write(text: str, path: Path | None) -> None:
+def _write(text: str, path: Path | None, inputs: Sequence[str]) -> None:
     """Write a graph in the format of the path."""
     if path is None or path.suffix.lower() == '.dot':
-        write_text(text, path)
+        write_text(text, path, inputs)
         return
     if shutil.which('dot') is None:
         msg = ('the program dot is not installed; install the package graphviz, or write a file '
                'that ends with .dot')
         raise CommandError(msg)
     done = subprocess.run(
-        ['dot', f'-T{path.suffix[1:].lower()}', '-o', os.fspath(path)],
-        input=text, encoding='utf-8', capture_output=True, check=False, preexec_fn=lift_limits)
+        ['dot', f'-T{path.suffix[1:].lower()}'],
+        input=text.encode(), capture_output=True, check=False, preexec_fn=lift_limits)
     if done.returncode:
-        msg = f'dot cannot draw the graph: {done.stderr.strip()}'
+        msg = f'dot cannot draw the graph: {done.stderr.decode(errors="replace").strip()}'
         raise CommandError(msg)
+    replace_file(str(path), None, done.stdout, inputs)

@@ -67,7 +67,7 @@ def run(options: argparse.Namespace) -> int:
             if value)]
     else:
         lines = [line for each in topics for line in _lines(each)]
-    write_text('\n'.join(lines) + '\n', options.output)
+    write_text('\n'.join(lines) + '\n', options.output, scene.files)
     return 0
 
 

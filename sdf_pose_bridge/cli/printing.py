@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import chain
 import json
 import os
@@ -17,6 +17,7 @@ from typing import Any, TextIO, TypeVar
 from sdf_pose_bridge.errors import SdfError, SdfWarning, UriLookupError
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.problems import by_message
+from sdf_pose_bridge.sdformat.file_change import replace_file
 
 _Problem = TypeVar('_Problem', bound='SdfError | SdfWarning')
 
@@ -94,16 +95,12 @@ def print_message(command: str | None, message: str) -> None:
     print(text, file=sys.stderr)
 
 
-def write_text(text: str, path: Path | None) -> None:
-    """Write a file, or the standard output if there is no path; may raise a CommandError."""
+def write_text(text: str, path: Path | None, inputs: Iterable[str]) -> None:
+    """Write a file that is none of the inputs, or the standard output if there is no path."""
     if path is None:
         print(text, end='')
-        return
-    try:
-        path.write_text(text, encoding='utf-8')
-    except OSError as error:
-        msg = f'cannot write {path}: {error.strerror}'
-        raise CommandError(msg) from error
+    else:
+        replace_file(str(path), None, text.encode(), inputs)
 
 
 def print_json(

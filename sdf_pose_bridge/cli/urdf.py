@@ -48,5 +48,5 @@ def run(options: argparse.Namespace) -> int:
         frame_separator=options.frame_separator, resource_paths=options.resource_paths,
         has_capsules=options.capsules)
     print_problems((), urdf.warnings, sys.stderr)
-    write_text(urdf.text, options.output)
+    write_text(urdf.text, options.output, scene.files)
     return 0

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 import contextlib
 from functools import partial
 import importlib
@@ -40,6 +40,7 @@ from sdf_pose_bridge.problems import errors_of_process
 from sdf_pose_bridge.process_limits import FOR_FILES
 from sdf_pose_bridge.scene.pose_setting import pose_change
 from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.file_change import replace_file
 from sdf_pose_bridge.sdformat.file_watcher import FileWatcher
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 
@@ -98,11 +99,11 @@ def run(options: argparse.Namespace) -> int:
         load, read_since_ns = partial(_scene, process, options), time.time_ns()
         scene = load()
         print_problems((), scene.warnings, sys.stderr)
+        meshes = viewer.MeshReader(resource_finder(options.resource_paths), process)
         try:
             pages = viewer.Pages(
                 scene, tf_options_from_arguments(options), 0 if options.output else options.port,
-                Units(options.length_unit, options.angle_unit),
-                viewer.MeshReader(resource_finder(options.resource_paths), process),
+                Units(options.length_unit, options.angle_unit), meshes,
                 partial(pose_change, load=load) if options.edit else None)
         except UntestedViserError as error:
             raise CommandError(str(error)) from error
@@ -110,7 +111,7 @@ def run(options: argparse.Namespace) -> int:
             for line in pages.reasons:
                 print(f'sdf_pose view: {line}', file=sys.stderr)
             if options.output is not None:
-                _write(pages.html(), options.output)
+                _write(pages.html(), options.output, {*scene.files, *meshes.files})
                 return 0
             _open(pages.address, options.port)
             watcher = FileWatcher()
@@ -180,12 +181,13 @@ def _follow(pages: Any, watcher: FileWatcher, load: Callable[[], Scene]) -> None
         pages.show_errors(map(str, error.errors))
 
 
-def _write(html: str, path: Path) -> None:
+def _write(html: str, path: Path, inputs: Iterable[str]) -> None:
     try:
-        path.write_bytes(_picture(html) if path.suffix.lower() == '.png' else html.encode())
+        content = _picture(html) if path.suffix.lower() == '.png' else html.encode()
     except OSError as error:
         msg = f'cannot write {path}: {error}'
         raise CommandError(msg) from error
+    replace_file(str(path), None, content, inputs)
 
 
 def _scene(

@@ -1,9 +1,10 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""A change of a file: other bytes in one range of it, written in one step."""
+"""A change of a file: other bytes in one range of it, written in one step, as outputs are."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 import contextlib
 from difflib import unified_diff
 import fcntl
@@ -95,7 +96,7 @@ def _shown(line: str) -> str:
     return '\t'.join(map(printable, shortened(text, _LONGEST_LINE).split('\t'))) + end
 
 
-def replace_file(path: str, old: bytes, new: bytes) -> None:
+def replace_file(path: str, old: bytes | None, new: bytes, inputs: Iterable[str] = ()) -> None:
     """
     Replace the content of a file, and keep its mode, owner, access list and attributes.
 
@@ -103,11 +104,13 @@ def replace_file(path: str, old: bytes, new: bytes) -> None:
     directory ``.sdf_pose_...`` may stay beside the file.
 
     :param path: the file, or a link to it, which stays a link.
-    :raises FileWriteError: if it cannot be written, has another content than ``old``, or is being
-        written by another process; it is unchanged then.
+    :param old: its content; None for an output, which may be a new file, or a stream to write to.
+    :param inputs: the files that were read, which an output must not replace.
+    :raises FileWriteError: if it cannot be written, is one of ``inputs``, has another content than
+        ``old``, or is being written by another process; it is unchanged then.
     """
     try:
-        reason = _refusal(Path(path), old, new)
+        reason = _refusal(Path(path), old, new, inputs)
     except BlockingIOError:
         reason = 'another process is writing the file'
     except OSError as error:
@@ -116,36 +119,53 @@ def replace_file(path: str, old: bytes, new: bytes) -> None:
         raise FileWriteError(reason, Place(path))
 
 
-def _refusal(path: Path, old: bytes, new: bytes) -> str:
+def _refusal(path: Path, old: bytes | None, new: bytes, inputs: Iterable[str]) -> str:
     """Replace the content of a file, or return why it must not be replaced."""
-    # The rename below would replace a read-only file too, so it is opened for writing. Whatever
-    # else takes its place is not waited for, and not read.
-    with os.fdopen(os.open(path, os.O_RDWR | os.O_NONBLOCK), 'rb') as file:
-        status = os.fstat(file.fileno())
-        if not stat.S_ISREG(status.st_mode):
-            return 'it is no regular file any more'
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    is_there = old is not None or path.exists()
+    with contextlib.ExitStack() as stack:
+        if old is None and is_there:
+            if path.is_file() and _is_one_of(path, '/dev/stdin', *inputs):
+                return 'this file was read, so no output replaces it; name another one'
+            if not path.is_file() or _is_one_of(path, '/dev/stdout', '/dev/stderr'):
+                stack.enter_context(path.open('ab')).write(new)
+                return ''
+        if is_there:
+            # The rename below would replace a read-only file too, so it is opened for writing.
+            # Whatever else takes its place is not waited for, and not read.
+            file = stack.enter_context(
+                os.fdopen(os.open(path, os.O_RDWR | os.O_NONBLOCK), 'rb'))
+            status = os.fstat(file.fileno())
+            if not stat.S_ISREG(status.st_mode):
+                return 'it is no regular file any more'
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            if status.st_nlink > 1 and old is not None:
+                return (f'the file has {status.st_nlink} names (hard links), and the others would '
+                        'keep the old text; copy it first, or change it by an editor')
         path = path.resolve()
-        if status.st_nlink > 1:
-            return (f'the file has {status.st_nlink} names (hard links), and the others would '
-                    'keep the old text; copy it first, or change it by an editor')
         # A directory of its own, as the standard library removes it after any exception.
-        with tempfile.TemporaryDirectory(prefix='.sdf_pose_', dir=path.parent) as directory:
-            new_path = Path(directory, path.name)
-            with new_path.open('xb') as new_file:
+        new_path = Path(stack.enter_context(
+            tempfile.TemporaryDirectory(prefix='.sdf_pose_', dir=path.parent)), path.name)
+        with new_path.open('xb') as new_file:
+            if is_there:
                 # The access list that the directory gives to its files may not be the file's.
                 with contextlib.suppress(OSError):
                     os.removexattr(new_path, _ACCESS_LIST)
                 try:
                     os.chown(new_path, status.st_uid, status.st_gid)
                 except OSError as error:
-                    return f'its owner and group cannot be kept: {(error.strerror or "").lower()}'
+                    if old is not None:
+                        return f'its owner and group cannot be kept: {str(error.strerror).lower()}'
                 shutil.copystat(path, new_path)
-                # Written last, so that the file has the time of now.
-                new_file.write(new)
-                new_file.flush()
-                os.fsync(new_file.fileno())
-            if file.read(len(old) + 1) != old or not os.path.samestat(status, path.stat()):
-                return 'the file has changed since it was read, so it is not overwritten'
-            new_path.replace(path)
+            # Written last, so that the file has the time of now.
+            new_file.write(new)
+            new_file.flush()
+            os.fsync(new_file.fileno())
+        if old is not None and (
+                file.read(len(old) + 1) != old or not os.path.samestat(status, path.stat())):
+            return 'the file has changed since it was read, so it is not overwritten'
+        new_path.replace(path)
     return ''
+
+
+def _is_one_of(path: Path, *others: str) -> bool:
+    return any(path.samefile(each) for each in map(Path, others) if each.exists())

@@ -58,6 +58,8 @@ class Usage:
     def __init__(self, limits: Limits = DEFAULT_LIMITS) -> None:
         self.limits = limits
         self._used = dict.fromkeys(Limits._fields, 0)
+        self.files: list[str] = []
+        """Paths of the files that were read."""
 
     def add(self, limit: str, amount: int, place: Place) -> None:
         """

@@ -135,6 +135,7 @@ def bytes_from_file(path: str, usage: Usage, *, allows_pipe: bool = False) -> by
                 raise FileReadError(msg, place)
             os.set_blocking(file.fileno(), True)
             usage.add('bytes_read', status.st_size, place)
+            usage.files.append(path)
             text = file.read(usage.left('bytes_read') + 1 if is_pipe else status.st_size)
             usage.add('bytes_read', len(text) - status.st_size, place)
             if text.startswith(b'version https://git-lfs.'):

@@ -43,19 +43,19 @@ def test_unknown_format_is_refused(run_main, command, formats):
 @pytest.mark.parametrize(('arguments', 'code', 'reason'), [
     ('graph bad.sdf', 1, 'bad.sdf:3: ELEMENT_INVALID: '),
     ('graph good.sdf --model n', 1, 'there is no model "n"'),
-    ('graph good.sdf -o nowhere/a.dot', 1, 'sdf_pose graph: cannot write nowhere/a.dot: '),
+    ('graph good.sdf -o nowhere/a.dot', 1, 'nowhere/a.dot: FILE_WRITE: the file cannot '),
     ('graph good.sdf -o a.gif', 2, '"a.gif" must end with one of .svg, .png, .pdf, .dot'),
     ('graph good.sdf bad.sdf', 2, 'unrecognized arguments: bad.sdf'),
     ('view bad.sdf -o a.html', 1, 'bad.sdf:3: ELEMENT_INVALID: '),
     ('view good.sdf -o a.html --model n', 1, 'there is no model "n"'),
-    ('view good.sdf -o nowhere/a.html', 1, 'sdf_pose view: cannot write nowhere/a.html: '),
+    ('view good.sdf -o nowhere/a.html', 1, 'nowhere/a.html: FILE_WRITE: the file cannot '),
     ('view good.sdf -o a.svg', 2, '"a.svg" must end with one of .html, .png'),
     ('urdf bad.sdf', 1, 'bad.sdf:3: ELEMENT_INVALID'),
     ('urdf none.sdf', 1, 'FILE_READ'),
     ('urdf models.sdf', 1, 'the file has the models "table", "robot"; choose one by --model'),
     ('urdf models.sdf --model rubot', 1, 'there is no model "rubot" to publish; did you mean'),
     ('urdf good.sdf -o none/a.urdf', 1, (
-        'sdf_pose urdf: cannot write none/a.urdf: No such file or directory')),
+        'none/a.urdf: FILE_WRITE: the file cannot be written: no such file or directory')),
     ('urdf good.sdf --frame-separator=', 2, 'at least one character'),
     ('gz_bridge none.sdf', 1, 'FILE_READ'),
     ('gz_bridge states.sdf', 1, 'ELEMENT_MISSING: the joint_states of model "m" is on'),
@@ -63,7 +63,7 @@ def test_unknown_format_is_refused(run_main, command, formats):
         'good.sdf has a world; --model-name and --world-name')),
     ('gz_bridge good.sdf --only joint', 2, (
         '"joint" has another name than joints, poses, odometry')),
-    ('gz_bridge good.sdf -o none/a.yaml', 1, 'cannot write none/a.yaml'),
+    ('gz_bridge good.sdf -o none/a.yaml', 1, 'none/a.yaml: FILE_WRITE: '),
 ])
 def test_wrong_input_gives_one_error(run_main, files, arguments, code, reason):
     if arguments.startswith('view'):

@@ -11,6 +11,7 @@ import webbrowser
 
 from command_line import completed
 from folders import ROOT
+import mesh_texts
 import pytest
 
 MESH = """<sdf version="1.9"><model name="m"><link name="l"><visual name="v"><geometry>
@@ -78,6 +79,18 @@ def test_what_is_not_drawn_is_said(run_on):
     assert done.returncode == 0
     assert done.stderr.startswith(
         'sdf_pose view: 1 shape cannot be drawn: the mesh "none.stl": it is not in ".";')
+
+
+def test_a_texture_that_was_read_is_not_replaced(run_on, files):
+    (files / 'mesh.obj').write_text(mesh_texts.TEXTURED_OBJ)
+    (files / 'colors.mtl').write_text('newmtl m\nmap_Kd texture.png\n')
+    texture = files / 'texture.png'
+    pytest.importorskip('PIL.Image').new('RGB', (4, 4)).save(texture)
+    before = texture.read_bytes()
+    (files / 'page.html').symlink_to('texture.png')
+    done = run_on(MESH.replace('none.stl', 'mesh.obj'), 'view', '-o', 'page.html')
+    assert done.stderr.startswith('page.html: FILE_WRITE: this file was read')
+    assert texture.read_bytes() == before
 
 
 def test_page_opens_in_the_browser(run_main, monkeypatch):

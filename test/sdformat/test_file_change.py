@@ -189,12 +189,14 @@ def test_without_the_right_to_write_it_is_one_sentence(path, part):
     refusing.chmod(mode)
 
 
-def test_an_owner_that_cannot_be_kept_is_a_reason_to_refuse(path, monkeypatch):
+def test_an_owner_that_cannot_be_kept_is_a_reason_to_refuse_but_for_an_output(path, monkeypatch):
     def refuse(*_):
         raise PermissionError(1, 'Operation not permitted')
 
     monkeypatch.setattr(os, 'chown', refuse)
     assert_refused(path, 'its owner and group cannot be kept: operation not')
+    replace_file(str(path), None, NEW)
+    assert path.read_bytes() == NEW
 
 
 def test_without_space_the_old_file_is_whole(path):

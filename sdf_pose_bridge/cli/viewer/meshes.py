@@ -68,6 +68,8 @@ class Mesh(NamedTuple):
     parts: tuple[MeshPart, ...] = ()
     reason: str = ''
     """The reason why the surfaces are replaced; empty if they come from the file."""
+    files: tuple[str, ...] = ()
+    """Paths of the files that were read, with textures."""
 
     @property
     def size(self) -> int:
@@ -88,6 +90,8 @@ class MeshReader:
         self._process = process
         self._kept: dict[tuple[str, Shape, int, int], Mesh] = {}
         self._kept_bytes = 0
+        self.files: set[str] = set()
+        """Paths of all files that were read."""
         self.left_s = ALLOWANCE.processor_s
         """The processor time that is left for further meshes."""
 
@@ -138,6 +142,7 @@ class MeshReader:
                 self._kept.clear()
                 self._kept_bytes = mesh.size
             self._kept[key] = mesh
+            self.files.update(mesh.files)
         return self._kept[key]
 
 
@@ -155,14 +160,16 @@ def mesh_from_file(path: str, shape: Shape) -> Mesh:
     :param shape: the shape that names it, and a part of it if not all of it is shown.
     :return: its surfaces, or the reason why there are none.
     """
+    usage = Usage(Limits(bytes_read=MOST_BYTES))
     try:
-        return Mesh(_parts(*_scene_from_file(path, shape.submesh), shape))
+        mesh = Mesh(_parts(*_scene_from_file(path, shape.submesh, usage), shape))
     except SdfError as error:
-        return Mesh(reason=error.message)
+        mesh = Mesh(reason=error.message)
     except MemoryError:
         raise
     except Exception as error:  # noqa: BLE001  # its readers raise errors of all classes
-        return Mesh(reason=f'it cannot be shown: {printable(shortened(str(error)))}')
+        mesh = Mesh(reason=f'it cannot be shown: {printable(shortened(str(error)))}')
+    return mesh._replace(files=tuple(usage.files))
 
 
 class _NamedFiles(FilePathResolver):
@@ -183,13 +190,12 @@ class _NamedFiles(FilePathResolver):
         return bytes_from_file(str(path), self._usage)
 
 
-def _scene_from_file(path: str, submesh: str) -> tuple[trimesh.Scene, list[str]]:
+def _scene_from_file(path: str, submesh: str, usage: Usage) -> tuple[trimesh.Scene, list[str]]:
     """Read a mesh; also return the name of each of its parts, in the order of the graph."""
     suffix = Path(path).suffix.lower()
     if suffix not in FORMATS:
         msg = f'its name must end with one of {", ".join(FORMATS)}'
         raise ValueError(msg)
-    usage = Usage(Limits(bytes_read=MOST_BYTES))
     text = bytes_from_file(path, usage)
     node_names = _node_names(text, path) if suffix == '.dae' else {}
     options = {}
