@@ -1,10 +1,12 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""``sdf_pose diff``: print the frames of two files that were added, removed, renamed or moved."""
+"""``sdf_pose diff``: print what has changed in TF between two files."""
 
 from __future__ import annotations
 
 import argparse
+from collections import defaultdict
+from collections.abc import Sequence
 import math
 import sys
 
@@ -20,14 +22,22 @@ from sdf_pose_bridge.cli.frames import print_csv, print_table, TableRow
 from sdf_pose_bridge.cli.loading import load_file, sdf_name
 from sdf_pose_bridge.cli.printing import print_json, print_problems
 from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.geometry.poses import TOLERANCE
 from sdf_pose_bridge.geometry.units import Units
-from sdf_pose_bridge.scene.comparison import Change, Difference, differences_of_scenes, TOLERANCE
+from sdf_pose_bridge.names import listed
+from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.tf.comparison import Change, Difference, differences_of_scenes
+from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
 
-HELP = 'print the differences between the frames of two files'
+_MOST_MOVED = 20
+"""Largest number of frames that are named because they moved with another one."""
+
+HELP = 'print the changes of TF between two files'
 DESCRIPTION = (
-    'Compare two files: print the elements that were added, removed, renamed or '
-    'moved, one per line, with the distance and the angle. The exit code is 1 if '
-    'there is a difference, 2 if a file has an error.')
+    'Compare what TF depends on in two files: print the elements that were added, '
+    'removed, renamed or moved, and other parents in TF, types, axes, limits and '
+    'mimics of joints, and frame ids of sensors, with what it was. The exit code '
+    'is 1 if there is a change, 2 if a file has an error.')
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -40,9 +50,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--tolerance', metavar='T', default=TOLERANCE, type=argument_type(
             float, 'is not a distance', lambda tolerance: 0.0 <= tolerance < math.inf),
-        help='the largest distance in metres, and angle in radians, of a frame that has not '
-             f'moved; by default {TOLERANCE:g}')
-    add_kinds_argument(parser, 'compare only')
+        help='the largest difference of numbers that is none, in metres and radians; by default '
+             f'{TOLERANCE:g}')
+    add_kinds_argument(parser, 'compare only', DEFAULT_KINDS | {Kind.JOINT})
     add_unit_arguments(parser)
 
 
@@ -73,16 +83,26 @@ def run(options: argparse.Namespace) -> int:
         print_csv(Difference._fields, records)
     elif options.format == 'text' and differences:
         units = Units(options.length_unit, options.angle_unit)
+        followers = defaultdict[str, list[str]](list)
+        for each in differences:
+            followers[each.moved_with].append(each.name)
+        moved = {each.name for each in differences if each.change is Change.MOVED}
         print_table(
             ('change', f'distance {units.length.name}', f'angle {units.angle.name}'),
-            [_table_row(difference, units) for difference in differences])
+            [_table_row(each, units, followers.get(each.name, ())) for each in differences
+             if each.moved_with not in moved], 'was')
     return 2 if errors else 1 if differences else 0
 
 
-def _table_row(difference: Difference, units: Units) -> TableRow:
-    values = [difference.change.value, '', '']
-    if difference.change is Change.MOVED:
-        values[1:] = [f'{round(value, 9) * unit.factor:.6g}' for value, unit in zip(
-            (difference.distance_m, difference.angle_rad), units, strict=True)]
-    note = f'was {difference.old_name}' if difference.change is Change.RENAMED else ''
-    return TableRow(difference.name, difference.kind.label, values, note)
+def _table_row(difference: Difference, units: Units, followers: Sequence[str]) -> TableRow:
+    change, old, note = difference.change, difference.old, ''
+    values = [change.value, '', '']
+    if change is Change.MOVED:
+        numbers = difference.distance_m, difference.angle_rad, *map(float, old.split())
+        texts = [f'{round(value, 9) * unit.factor + 0.0:.6g}' for value, unit in zip(
+            numbers, (*units, *units.of_pose), strict=True)]
+        values[1:], old = texts[:2], ' '.join(texts[2:])
+        note = f'with it: {listed(followers, _MOST_MOVED)}' if followers else ''
+    elif change not in (Change.ADDED, Change.REMOVED, Change.RENAMED):
+        old = f'{old}, now {difference.new}'
+    return TableRow(difference.name, difference.kind.label, values, note, remark=old)

@@ -40,31 +40,34 @@ class TableRow(NamedTuple):
     branches: str = ''
     """The branches of a tree that are before the name, each with a space."""
     is_bold: bool = False
+    remark: str = ''
+    """The text behind the values."""
 
 
 Frame: TypeAlias = tuple[Mapping[str, Any], TableRow]
 """The record of a frame for other programs, and its row in a table."""
 
 
-def print_table(labels: Sequence[str], rows: Sequence[TableRow]) -> None:
+def print_table(labels: Sequence[str], rows: Sequence[TableRow], remark: str = '') -> None:
     """
     Print a table of frames. On a terminal, names are shortened so that lines are not wrapped.
 
     :param labels: the labels of the columns behind the kinds, such as x, y and z.
+    :param remark: the label of the remarks, if there are any.
     """
     rows = [
         row._replace(
             name=printable(row.name[-2 * _WIDEST_NAME:]),
             kind=_SHORT_KINDS.get(row.kind, row.kind), branches=_branches(row.branches),
             values=row.values or ('',) * len(labels))
-        for row in (TableRow('frame', 'kind', labels), *rows)]
+        for row in (TableRow('frame', 'kind', labels, remark=remark), *rows)]
     widths = [max(map(len, column)) for column in zip(*(row.values for row in rows), strict=True)]
     kind_width = max(len(row.kind) for row in rows)
     columns = shutil.get_terminal_size().columns if sys.stdout.isatty() else 2 * _WIDEST_NAME
     width = min(
         max(len(row.branches + row.name) for row in rows), _WIDEST_NAME,
         max(columns - kind_width - sum(widths) - len(widths) - 3, _NARROWEST_NAME))
-    for name, kind, values, note, branches, is_bold in rows:
+    for name, kind, values, note, branches, is_bold, remark in rows:
         room = width - min(len(name), _NARROWEST_NAME)
         branches = branches[max(len(branches) - room, 0):]
         longest = width - len(branches)
@@ -75,7 +78,7 @@ def print_table(labels: Sequence[str], rows: Sequence[TableRow]) -> None:
             styled(branches, DIM, sys.stdout)
             + (styled(name, BOLD, sys.stdout) if is_bold else name)
             + f'  {styled(f"{kind:{kind_width}}", _COLORS.get(kind, ""), sys.stdout)}  '
-            f'{" ".join(map(str.rjust, values, widths))}'.rstrip())
+            f'{" ".join(map(str.rjust, values, widths))}  {printable(remark)}'.rstrip())
         if note:
             below = branches.translate(BELOW) + '  '
             note = shortened(printable(note), columns - len(below))

@@ -20,9 +20,9 @@ from sdf_pose_bridge.cli.printing import CommandError, print_message
 from sdf_pose_bridge.geometry.pose_texts import FORMATS
 from sdf_pose_bridge.geometry.poses import Pose, pose_product
 from sdf_pose_bridge.names import listed, printable, scoped_name
-from sdf_pose_bridge.scene.comparison import names_of_moved
 from sdf_pose_bridge.scene.pose_setting import are_close, pose_change
 from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.tf.comparison import names_of_moved
 
 _MOST_MOVED = 20
 """Largest number of moved frames that are named."""

@@ -24,6 +24,10 @@ PoseArray: TypeAlias = Floats
 """Poses as rows: shape (n, 7), x y z in metres, unit quaternion x y z w."""
 
 
+TOLERANCE = 1e-9
+"""A smaller difference of poses, in metres and radians, comes from rounding."""
+
+
 class Pose(NamedTuple):
     """
     Pose of a child frame in a parent frame: metres, and a unit quaternion.

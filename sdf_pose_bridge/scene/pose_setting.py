@@ -27,10 +27,10 @@ from sdf_pose_bridge.geometry.poses import (
     pose_inverse,
     pose_product,
     relative_pose,
+    TOLERANCE,
 )
 from sdf_pose_bridge.geometry.rotations import canonical_quaternion, rpy_from_quaternion
 from sdf_pose_bridge.names import quoted_names
-from sdf_pose_bridge.scene.comparison import TOLERANCE
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.file_change import FileChange
 from sdf_pose_bridge.sdformat.grammar import Kind

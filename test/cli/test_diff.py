@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """``sdf_pose diff``: the frames that changed, and the exit code."""
 
+import json
 import os
 import shutil
 import sys
@@ -9,6 +10,7 @@ import sys
 from command_line import completed
 from folders import ROOT
 import pytest
+from sdf_texts import joint, model_file, TWO_LINKS
 
 
 @pytest.fixture
@@ -30,15 +32,14 @@ def test_moved_frames_have_distance_and_angle(diff):
     done = diff('1 2 3 0 0 0', '1 2 3.5 0 0 0.1')
     assert done.returncode == 1
     assert done.stdout.splitlines() == [
-        'frame  kind   change distance m angle deg',
-        'f      frame   moved        0.5   5.72958',
-        'm      model   moved   0.509894   5.72958',
-        'm::l   link    moved   0.509894   5.72958']
+        'frame  kind   change distance m angle deg  was',
+        'f      frame   moved        0.5   5.72958  1 2 3 0 0 0',
+        '  with it: m, m::l']
 
 
 def test_rounding_errors_are_printed_as_zero(diff):
     done = diff('1 2 3 0 0 0', '1 2 3.0000000000000004 0 0 0.1', '--kinds', 'frame', '--radians')
-    assert done.stdout.splitlines()[1].split()[-2:] == ['0', '0.1']
+    assert done.stdout.splitlines()[1].split()[3:5] == ['0', '0.1']
 
 
 @pytest.mark.parametrize(('old', 'new', 'arguments', 'code'), [
@@ -54,7 +55,33 @@ def test_code_is_that_of_the_frames_that_are_compared_or_of_an_error(
 def test_added_removed_and_renamed(diff):
     done = diff('<link name="l"/>', '<link name="k"/><frame name="g"/>')
     assert [line.split() for line in done.stdout.splitlines()[1:]] == [
-        ['m::k', 'link', 'renamed'], ['was', 'm::l'], ['m::g', 'frame', 'added']]
+        ['m::k', 'link', 'renamed', 'm::l'], ['m::g', 'frame', 'added']]
+
+
+def test_a_joint_that_turns_the_other_way_is_a_line_with_what_it_was(run_main, files):
+    for name, axis in (('new', '0 0 -1'), ('old', '0 0 1')):
+        (files / f'{name}.sdf').write_text(model_file(TWO_LINKS + joint(
+            f'<parent>a</parent><child>b</child><axis><xyz>{axis}</xyz></axis>', 'j', 'revolute')))
+    done = run_main('diff', 'old.sdf', 'new.sdf')
+    assert done.returncode == 1
+    assert [line.split(maxsplit=3) for line in done.stdout.splitlines()[1:]] == [
+        ['m::j', 'joint', 'axis', '0 0 1, now 0 0 -1']]
+    records = json.loads(run_main('diff', 'old.sdf', 'new.sdf', '--format', 'json').stdout)
+    assert [(each['change'], each['old'], each['new']) for each in records['differences']] == [
+        ('axis', '0 0 1', '0 0 -1')]
+
+
+def test_frames_that_move_with_one_of_a_kind_that_is_not_compared_have_lines(diff):
+    done = diff('1 2 3 0 0 0', '1 2 3 0 0 1', '--kinds', 'link,model')
+    assert [line.split()[:3] for line in done.stdout.splitlines()[1:]] == [
+        ['m', 'model', 'moved'], ['m::l', 'link', 'moved']]
+
+
+def test_records_have_all_that_moved_with_the_poses(diff):
+    done = diff('1 2 3 0 0 0', '1 2 4 0 0 0', '--format', 'csv')
+    assert [line.split(',')[2::4] for line in done.stdout.splitlines()[:3]] == [
+        ['name', 'moved_with'], ['f', ''], ['m', 'f']]
+    assert '1 2 3 0 0 0,1 2 4 0 0 0' in done.stdout
 
 
 @pytest.mark.skipif(shutil.which('git') is None, reason='needs git')
@@ -73,7 +100,7 @@ def test_git_shows_what_a_commit_moved(files):
         git('commit', '-q', '-m', pose)
     command = f'{sys.executable} -m sdf_pose_bridge diff'
     shown = git('difftool', '--no-prompt', '--extcmd', command, 'HEAD~1', '--', 'good.sdf')
-    assert shown.splitlines()[1].split() == ['f', 'frame', 'moved', '1', '0']
+    assert shown.splitlines()[1].split()[:5] == ['f', 'frame', 'moved', '1', '0']
 
 
 def test_a_missing_file_is_an_error(run_main):
