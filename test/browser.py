@@ -5,14 +5,14 @@
 import contextlib
 import itertools
 import json
-import os
-import shutil
 import subprocess
 import time
 from urllib.parse import urlsplit
 from urllib.request import Request, urlopen
 
 from deadline import DEADLINE_S, wait_until
+import needs
+from processes import started
 import pytest
 
 OPTIONS = (
@@ -116,12 +116,8 @@ def browser(folder):
 
     Skip where there is no browser, or nothing that it could show.
     """
-    pytest.importorskip('viser', reason='needs viser')
-    program = shutil.which('chromium') or shutil.which('google-chrome')
-    if program is None or 'LD_PRELOAD' in os.environ:
-        pytest.skip('needs Chromium, without the library of a middleware in its processes')
-    process = subprocess.Popen(
-        [program, *OPTIONS, f'--user-data-dir={folder}', 'about:blank'],
+    process = started(
+        [needs.browser(), *OPTIONS, f'--user-data-dir={folder}', 'about:blank'],
         stderr=subprocess.PIPE, text=True)
     try:
         line = next(line for line in process.stderr if 'DevTools listening on' in line)

@@ -3,7 +3,6 @@
 """The command line as its users start it."""
 
 from functools import partial
-from importlib.util import find_spec
 import os
 from pathlib import Path
 import subprocess
@@ -11,20 +10,12 @@ import sys
 
 from deadline import DEADLINE_S
 from folders import ROOT
-import pytest
 
 completed = partial(
     subprocess.run, capture_output=True, text=True, timeout=DEADLINE_S, check=False)
 """Runs a command to its end: ``completed(command, **options)`` returns what it has printed."""
 
 AS_MODULE = [sys.executable, '-m', 'sdf_pose_bridge']
-
-
-def skip_without(*modules):
-    """Skip a test whose processes need modules; setuptools cannot be imported into any process."""
-    for name in modules:
-        if find_spec(name) is None:
-            pytest.skip(f'needs {name}')
 
 
 def executable_of_workspace(name):

@@ -2,16 +2,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """The environment of tests, fixtures with ROS, settings of property tests, parallel processes."""
 
+from functools import partial
 from importlib.metadata import version
 import importlib.util
 import os
 from pathlib import Path
+import signal
 import tempfile
+import time
 
 from lxml import etree
 from own_environment import environment_of_tests
 import pytest
 from ros_domain import environment_with_domain
+from shared_memory import remove_dead_segments
 from sizes import size
 
 try:
@@ -29,6 +33,10 @@ else:
 
 def pytest_configure(config):
     """Give tests an environment of their own, before their modules import ROS."""
+    # All that was made is removed, and all processes end, where this is ended from outside.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    if not hasattr(config, 'workerinput'):
+        config.add_cleanup(partial(remove_dead_segments, time.time()))
     home = tempfile.TemporaryDirectory(prefix='sdf_pose_bridge_home_')
     config.add_cleanup(home.cleanup)
     environment = environment_of_tests(os.environ, home.name)

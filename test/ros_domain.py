@@ -6,15 +6,12 @@ import contextlib
 import os
 from pathlib import Path
 import random
-import re
 import socket
 
 import pytest
+from shared_memory import FIRST_PORT, PORTS, remove_incomplete_ports, remove_ports
 
 _CLAIMS = []
-_FIRST_PORT = 7400
-_PORTS = 250
-_IS_COMPLETE = (2).to_bytes(4, 'little')
 
 needs_fast_dds = pytest.mark.skipif(
     'fastrtps' not in os.environ.get('RMW_IMPLEMENTATION', 'rmw_fastrtps_cpp'),
@@ -23,32 +20,17 @@ needs_fast_dds = pytest.mark.skipif(
 
 def port_of_claim(domain):
     """Return the sixth of the 250 UDP ports of a domain, which the middleware leaves alone."""
-    return _FIRST_PORT + _PORTS * domain + 5
+    return FIRST_PORT + PORTS * domain + 5
 
 
 def has_participants(domain):
     """Tell whether a process on this machine has a port of a domain beside that of a claim."""
-    ports = {_FIRST_PORT + _PORTS * domain + number for number in range(_PORTS)}
+    ports = {FIRST_PORT + PORTS * domain + number for number in range(PORTS)}
     ports.remove(port_of_claim(domain))
     # The second column is the local address and port, in hexadecimal digits.
     lines = [line for table in ('udp', 'udp6') if (path := Path('/proc/net', table)).exists()
              for line in path.read_text(encoding='ascii').splitlines()[1:]]
     return any(int(line.split()[1].rpartition(':')[2], 16) in ports for line in lines)
-
-
-def remove_incomplete_segments(domain, folder=Path('/dev/shm')):
-    """
-    Remove the shared memory of a domain that a killed process had begun to create.
-
-    Fast DDS waits for its completion without a limit. The first four bytes are the state that
-    boost::interprocess sets to 2 when the memory can be used.
-    """
-    for segment in folder.glob('fast*_port*'):
-        port = re.fullmatch(r'fast(?:dds|rtps)_port([0-9]+)', segment.name)
-        if port and (int(port[1]) - _FIRST_PORT) // _PORTS == domain:
-            with contextlib.suppress(FileNotFoundError), segment.open('rb') as file:
-                if file.read(4) != _IS_COMPLETE:
-                    segment.unlink()
 
 
 def claims():
@@ -77,11 +59,13 @@ def claimed_domain():
             if has_participants(domain):
                 continue
             _CLAIMS.append(claim)
-            remove_incomplete_segments(domain)
+            remove_incomplete_ports(domain)
             try:
                 yield domain
             finally:
                 _CLAIMS.remove(claim)
+                if not has_participants(domain):
+                    remove_ports(domain)
             return
     msg = 'all ROS domains from 1 to 100 are taken'
     raise RuntimeError(msg)

@@ -10,6 +10,7 @@ import subprocess
 from command_line import COMMAND, ENVIRONMENT
 from deadline import wait_until
 import numpy as np
+from processes import started
 
 from sdf_pose_bridge.cli.viewer.view_point import view_of_bounds
 
@@ -36,7 +37,7 @@ LABELS = "[...document.querySelectorAll('.labels div')]"
 
 
 def run_view(folder, *arguments, **options):
-    return subprocess.Popen(
+    return started(
         [*COMMAND, 'view', *arguments], cwd=folder, text=True,
         env={**os.environ, **ENVIRONMENT, 'PATH': os.environ['PATH'], 'BROWSER': 'true'},
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)

@@ -9,6 +9,7 @@ import sys
 
 from command_line import completed
 from folders import ROOT
+import needs
 import pytest
 
 from sdf_pose_bridge import load_text
@@ -103,8 +104,8 @@ def test_commands(command, folder, capsys):
     program, *arguments = shlex.split(command)
     assert program == 'sdf_pose', 'run it here, or name it above'
     if '-o' in arguments:
-        if arguments[0] == 'graph' and shutil.which('dot') is None:
-            pytest.skip('needs dot of Graphviz')
+        if arguments[0] == 'graph':
+            needs.program('dot')
         if arguments[0] == 'view':
             pytest.importorskip('viser', reason='needs viser')
     assert main(arguments) == 0

@@ -9,10 +9,11 @@ import subprocess
 import sys
 import sysconfig
 
-from command_line import completed, executable_of_workspace, skip_without
+from command_line import completed, executable_of_workspace
 from deadline import DEADLINE_S
 from folders import ROOT
 import mesh_texts
+import needs
 import pytest
 
 MESH = """<sdf version="1.9"><model name="m"><link name="l"><visual name="v"><geometry>
@@ -24,8 +25,9 @@ NOT_COPIED = shutil.ignore_patterns(
 @pytest.fixture(scope='session')
 def prefix_of_wheel(tmp_path_factory):
     """A folder in which pip has installed the wheel."""
-    skip_without('pip', 'setuptools', 'wheel')
+    needs.modules('pip', 'setuptools', 'wheel')
     folder = tmp_path_factory.mktemp('wheel')
+    needs.executables_in(folder)
     shutil.copytree(ROOT, folder / 'source', ignore=NOT_COPIED)
     # Pip builds a wheel and installs it.
     subprocess.run(
@@ -79,7 +81,6 @@ def test_the_node_of_the_wheel_has_a_name_of_its_own(prefix_of_wheel):
 
 
 def test_the_environment_has_the_node_under_the_same_name():
-    program = shutil.which('sdf_pose_bridge')
-    if program is None or executable_of_workspace('bridge') is None:
-        pytest.skip('needs the environment of underlay/setup.bash')
+    executable_of_workspace('bridge') or pytest.skip('needs a ROS workspace')
+    program = needs.program('sdf_pose_bridge')
     assert Path(program).resolve() == executable_of_workspace('bridge').resolve()

@@ -13,6 +13,7 @@ import sys
 import threading
 
 from deadline import DEADLINE_S
+from processes import started
 import pytest
 
 from sdf_pose_bridge import limited_process
@@ -326,7 +327,7 @@ def test_no_process_outlives_the_one_that_has_started_it(code, number):
     reader, writer = os.pipe()
     if code:
         code = f'import os; os.write({writer}, b"%d" % os.getpid())\n{code}'
-    parent = subprocess.Popen(
+    parent = started(
         [sys.executable, '-c', PARENT.format(code=code)], stdin=subprocess.PIPE,
         stdout=subprocess.PIPE, text=True, pass_fds=[writer])
     pids = [int(parent.stdout.readline())]

@@ -12,8 +12,9 @@ import re
 import sys
 import xml.etree.ElementTree as ET
 
-from command_line import completed, skip_without
+from command_line import completed
 from folders import ROOT
+import needs
 import pytest
 
 import sdf_pose_bridge
@@ -37,7 +38,7 @@ def package_xml(package):
 
 
 def run_setup(*options):
-    skip_without('setuptools')
+    needs.modules('setuptools')
     return completed(
         [sys.executable, 'setup.py', '--quiet', *options], cwd=ROOT, check=True,
         env={**os.environ, 'PYTHONWARNINGS': 'ignore'})
@@ -57,7 +58,7 @@ def installed_files():
 @cache
 def arguments_of_setup(*command):
     """Return what setup.py calls setuptools with, for a command."""
-    skip_without('setuptools')
+    needs.modules('setuptools')
     code = (
         'import json, runpy, setuptools; found = {}; setuptools.setup = found.update; '
         'runpy.run_path("setup.py"); found.pop("cmdclass"); print(json.dumps(found))')

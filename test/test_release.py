@@ -10,6 +10,7 @@ import xml.etree.ElementTree as ET
 
 from command_line import completed
 from folders import ROOT
+import needs
 import pytest
 
 pytest.importorskip('catkin_pkg', reason='needs catkin_pkg')
@@ -24,15 +25,13 @@ LAST = '0.9.0 (2026-01-01)\n------------------\n* First.\n'
 
 def git_in(folder):
     def run(*arguments):
-        return completed(['git', *arguments], cwd=folder, check=True).stdout.strip()
+        return completed([needs.program('git'), *arguments], cwd=folder, check=True).stdout.strip()
     return run
 
 
 @pytest.fixture(scope='module')
 def repository(tmp_path_factory):
     """A repository that has what a release changes, of which each test has a copy."""
-    if shutil.which('git') is None:
-        pytest.skip('needs git')
     folder = tmp_path_factory.mktemp('repository')
     for name in MANIFESTS:
         (folder / name).parent.mkdir(parents=True, exist_ok=True)

@@ -6,14 +6,15 @@ import socket
 import subprocess
 import sys
 
+from processes import started
 import pytest
 import ros_domain
-from ros_domain import claimed_domain, claims, port_of_claim, remove_incomplete_segments
+from ros_domain import claimed_domain, claims, port_of_claim
 
 
 def test_a_process_that_is_left_behind_keeps_its_domain_claimed():
     with claimed_domain() as domain:
-        process = subprocess.Popen(
+        process = started(
             [sys.executable, '-c', 'input()'], stdin=subprocess.PIPE, pass_fds=claims())
     assert claims() == []
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
@@ -33,22 +34,3 @@ def test_a_domain_that_another_program_uses_is_not_claimed(monkeypatch):
         participant.bind(('127.0.0.1', port_of_claim(taken) + 5))
         with claimed_domain() as domain:
             assert domain == free
-
-
-@pytest.mark.parametrize('state', [b'', bytes(4), b'\1\0\0\0'])
-def test_shared_memory_that_nobody_completed_is_removed(tmp_path, state):
-    segment = tmp_path / 'fastrtps_port22913'
-    segment.write_bytes(state)
-    remove_incomplete_segments(62, tmp_path)
-    assert not segment.exists()
-
-
-def test_other_shared_memory_is_kept(tmp_path):
-    complete = tmp_path / 'fastrtps_port22913'
-    complete.write_bytes(b'\2\0\0\0' + bytes(100))
-    lock = tmp_path / 'fastrtps_port22913_el'
-    lock.touch()
-    of_other_domain = tmp_path / 'fastrtps_port23150'
-    of_other_domain.touch()
-    remove_incomplete_segments(62, tmp_path)
-    assert sorted(tmp_path.iterdir()) == [complete, lock, of_other_domain]

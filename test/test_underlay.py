@@ -9,9 +9,11 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 
 from command_line import completed
 from folders import ROOT
+import needs
 import pytest
 
 SHELL_TOOLS = ('bash', 'dirname', 'env', 'head')
@@ -29,14 +31,18 @@ needs_python_of_jazzy = pytest.mark.skipif(
 needs_supported_machine = pytest.mark.skipif(
     platform.machine() != 'x86_64' or sys.version_info >= (3, 14),
     reason='this Python or processor is refused before')
-pytestmark = pytest.mark.skipif(
-    sys.platform != 'linux' or not shutil.which('bash'), reason='needs bash on Linux')
+pytestmark = pytest.mark.skipif(sys.platform != 'linux', reason='needs Linux')
 
 
 @pytest.fixture
-def checkout(tmp_path):
+def checkout():
     """Return a folder that has the environment's scripts but no environment."""
-    folder = tmp_path / 'checkout'
+    # The tools of ROS do not work in each path that TMPDIR may have.
+    with tempfile.TemporaryDirectory(dir='/tmp') as parent:
+        yield copy_of_scripts(Path(parent, 'checkout'))
+
+
+def copy_of_scripts(folder):
     shutil.copytree(ROOT / 'underlay', folder / 'underlay')
     shutil.copy(ROOT / 'setup.cfg', folder)
     return folder
@@ -45,16 +51,17 @@ def checkout(tmp_path):
 @pytest.fixture
 def tools(tmp_path):
     """Return a folder with the few commands that a shell script needs, to be a whole PATH."""
+    needs.executables_in(tmp_path)
     folder = tmp_path / 'tools'
     folder.mkdir()
     for name in SHELL_TOOLS:
-        (folder / name).symlink_to(shutil.which(name))
+        (folder / name).symlink_to(needs.program(name))
     return folder
 
 
 def command(folder, name, text):
     file = folder / name
-    file.write_text(f'#!{shutil.which("bash")}\n{text}\n')
+    file.write_text(f'#!{needs.program("bash")}\n{text}\n')
     file.chmod(0o755)
     return file
 
@@ -63,7 +70,7 @@ def make_underlay(checkout, **environment):
     environment = {
         'PATH': os.environ['PATH'], 'SDF_POSE_BRIDGE_ROS_PREFIX': '', **environment}
     return completed(
-        ['bash', str(checkout / 'underlay/make_underlay')], env=environment,
+        [needs.program('bash'), str(checkout / 'underlay/make_underlay')], env=environment,
         stdin=subprocess.DEVNULL)
 
 
@@ -78,7 +85,8 @@ def assert_refused_with(result, *words):
 
 def shell(script, **environment):
     return completed(
-        ['bash', '-c', script], env={**os.environ, **environment}, stdin=subprocess.DEVNULL)
+        [needs.program('bash'), '-c', script], env={**os.environ, **environment},
+        stdin=subprocess.DEVNULL)
 
 
 @pytest.mark.parametrize(('program', 'environment', 'words'), [

@@ -48,7 +48,7 @@ _FORMATS = ('.html', '.png')
 _PORT = 8080
 _PERIOD_S, _SETTLING_S = 0.05, 0.03
 
-_BROWSERS = ('chromium', 'chromium-browser', 'google-chrome', 'chrome')
+BROWSERS = ('chromium', 'chromium-browser', 'google-chrome', 'chrome')
 # WebGL in software if there is no graphics card; no requests except from the page.
 _BROWSER_OPTIONS = (
     '--headless', '--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader',
@@ -203,7 +203,7 @@ def _scene(
 
 def _picture(page: str) -> bytes:
     """Draw a page by a browser; raise an OSError if there is none, or it does not draw."""
-    browser = next(filter(None, map(shutil.which, _BROWSERS)), None)
+    browser = next(filter(None, map(shutil.which, BROWSERS)), None)
     if browser is None:
         msg = 'a picture needs Chrome or Chromium; a file that ends with .html does not'
         raise FileNotFoundError(msg)

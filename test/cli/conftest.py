@@ -10,12 +10,12 @@ from pathlib import Path
 import pty
 import shlex
 import struct
-import subprocess
 import termios
 from types import SimpleNamespace
 
 from command_line import COMMAND, completed, ENVIRONMENT
 from deadline import DEADLINE_S
+from processes import started
 import pytest
 
 from sdf_pose_bridge.cli.main import main, new_parser
@@ -64,7 +64,7 @@ def on_terminal(files):
     def run(columns, *arguments, **environment):
         reader, writer = pty.openpty()
         fcntl.ioctl(writer, termios.TIOCSWINSZ, struct.pack('4H', 24, columns, 0, 0))
-        with os.fdopen(reader, 'rb') as output, subprocess.Popen(
+        with os.fdopen(reader, 'rb') as output, started(
                 [*COMMAND, *arguments], cwd=files, env={**ENVIRONMENT, **environment},
                 stdin=writer, stdout=writer, stderr=writer) as process:
             os.close(writer)

@@ -4,11 +4,11 @@
 
 import json
 import os
-import shutil
 import sys
 
 from command_line import completed
 from folders import ROOT
+import needs
 import pytest
 from sdf_texts import joint, model_file, TWO_LINKS
 
@@ -84,13 +84,11 @@ def test_records_have_all_that_moved_with_the_poses(diff):
     assert '1 2 3 0 0 0,1 2 4 0 0 0' in done.stdout
 
 
-@pytest.mark.skipif(shutil.which('git') is None, reason='needs git')
 def test_git_shows_what_a_commit_moved(files):
     def git(*arguments):
         return completed(
-            ['git', '-c', 'user.name=a', '-c', 'user.email=b', *arguments], cwd=files,
-            env={**os.environ, 'PYTHONPATH': str(ROOT)},
-            check=True).stdout
+            [needs.program('git'), '-c', 'user.name=a', '-c', 'user.email=b', *arguments],
+            cwd=files, env={**os.environ, 'PYTHONPATH': str(ROOT)}, check=True).stdout
 
     git('init', '-q')
     for pose in ('1 2 3', '1 2 4'):

@@ -3,8 +3,8 @@
 """``sdf_pose graph``: nodes, arrows, and the program that draws them."""
 
 import re
-import shutil
 
+import needs
 import pytest
 from sdf_texts import model_file
 
@@ -86,9 +86,9 @@ def test_models_are_boxes_in_one_another():
         '__root__', 'subgraph', 'm', 'a', 'subgraph', 'n', 'b', '}', 'c', '}', '}']
 
 
-@pytest.mark.skipif(not shutil.which('dot'), reason='needs the program dot of Graphviz')
 @pytest.mark.parametrize(('name', 'start'), [('g.svg', b'<?xml'), ('g.PNG', b'\x89PNG')])
 def test_graph_is_drawn(run_main, files, name, start):
+    needs.program('dot')
     done = run_main('graph', 'good.sdf', '-o', name)
     assert (done.returncode, done.stderr) == (0, '')
     assert (files / name).read_bytes().startswith(start)

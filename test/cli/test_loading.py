@@ -9,6 +9,7 @@ import subprocess
 
 from command_line import COMMAND, ENVIRONMENT
 from deadline import DEADLINE_S
+from processes import started
 import pytest
 from sdf_texts import model_file
 
@@ -30,7 +31,7 @@ def test_a_command_that_needs_a_scene_ends_with_the_errors_of_its_file(options):
 
 def test_a_long_load_is_told_on_a_terminal(files):
     reader, writer = pty.openpty()
-    with os.fdopen(reader, 'rb') as terminal, subprocess.Popen(
+    with os.fdopen(reader, 'rb') as terminal, started(
             [*COMMAND, 'check', '-'], cwd=files, env=ENVIRONMENT, stdin=subprocess.PIPE,
             stderr=writer) as process:
         os.close(writer)

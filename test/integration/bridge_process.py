@@ -29,9 +29,10 @@ class LoggedProcess:
 
     def __init__(self, command, *, with_children=False):
         # Imported here, as processes that tests start import this module without that folder.
+        from processes import started
         from ros_domain import claims
         self._with_children = with_children
-        self._process = subprocess.Popen(
+        self._process = started(
             list(map(str, command)), stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
             start_new_session=with_children, pass_fds=claims())

@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The clients in Python and in C++ that users copy from: both log what the bridge answers."""
 
-import shutil
 import signal
 import sys
 
 from command_line import completed
 from folders import EXAMPLES
+import needs
 import pytest
 
 
@@ -19,12 +19,12 @@ def cpp_client(tmp_path_factory):
         get_package_prefix('rclcpp')
     except PackageNotFoundError:
         pytest.skip('needs rclcpp, which is not installed')
-    if shutil.which('cmake') is None:
-        pytest.skip('needs cmake, which is not installed')
+    cmake = needs.program('cmake')
+    needs.program('c++', 'g++')
     build = tmp_path_factory.mktemp('cpp_client')
     source = ['-S', EXAMPLES / 'cpp_client', '-DCMAKE_COMPILE_WARNING_AS_ERROR=ON']
     for options in ([*source, '-B', build], ['--build', build]):
-        done = completed(['cmake', *options], timeout=600)
+        done = completed([cmake, *options], timeout=600)
         assert done.returncode == 0, done.stdout + done.stderr
     return [build / 'client']
 

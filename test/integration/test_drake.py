@@ -7,6 +7,7 @@ from pathlib import Path
 import subprocess
 import sys
 
+from processes import started
 import pytest
 
 pytest.importorskip('simulation_interfaces', reason='needs simulation_interfaces')
@@ -53,7 +54,7 @@ def test_links_are_where_a_simulator_has_them(start_bridge, tf, joints, tmp_path
         sdf_file=path, simulator='/', simulator_rate=100.0, use_joint_states=True,
     ).wait_until_started()
     largest = 0.0
-    with subprocess.Popen(
+    with started(
             [DRAKE, program, path], env={}, text=True, stdin=subprocess.PIPE,
             stdout=subprocess.PIPE) as drake:
         for step in range(size(10, 300)):

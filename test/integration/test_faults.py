@@ -28,6 +28,8 @@ from command_line import completed, executable_of_workspace
 from deadline import DEADLINE_S
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import Point, Pose, PoseStamped
+import needs
+from processes import started
 import pytest
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
@@ -71,10 +73,11 @@ def small_disk(tmp_path):
     """A folder on a disk with room for one page, in 4096 bytes."""
     folder = tmp_path / 'small'
     folder.mkdir()
-    if completed(['mount', '-t', 'tmpfs', '-o', 'size=4k', 'none', folder]).returncode:
+    command = [needs.program('mount'), '-t', 'tmpfs', '-o', 'size=4k', 'none', folder]
+    if completed(command).returncode:
         pytest.skip('this machine does not permit to mount a file system')
     yield folder
-    subprocess.run(['umount', '--lazy', folder], check=True)
+    subprocess.run([needs.program('umount'), '--lazy', folder], check=True)
 
 
 def assert_reported_while_old_poses_are_served(bridge, listener, start_listener, path, text):
@@ -410,7 +413,7 @@ def test_a_full_disk_for_the_log_and_a_full_terminal_end_nothing(
     monkeypatch.setenv('ROS_LOG_DIR', str(small_disk))
     (small_disk / 'filling').write_bytes(bytes(4096))
     with Path('/dev/full').open('w') as full:
-        process = subprocess.Popen(
+        process = started(
             [executable_of_workspace('bridge'), '--ros-args', '-p', f'sdf_file:={file}'],
             stdout=full, stderr=full)
     try:

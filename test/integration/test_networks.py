@@ -4,7 +4,6 @@
 
 import os
 from pathlib import Path
-import shutil
 import subprocess
 import sys
 
@@ -13,6 +12,7 @@ from bridge_process import STARTED
 from changes import replace, world
 from command_line import completed, executable_of_workspace
 from deadline import wait_until
+import needs
 import pytest
 from ros_domain import needs_fast_dds
 from sizes import size
@@ -62,7 +62,7 @@ rclpy.spin(node)
 
 
 def ip(*arguments):
-    return completed(['ip', *arguments], check=True).stdout
+    return completed([needs.program('ip'), *arguments], check=True).stdout
 
 
 def counted_by_kernel(host):
@@ -117,7 +117,7 @@ def start_on(hosts, start_program, monkeypatch):
     def start(host, *command):
         # Each host has its own shared memory.
         return start_program([
-            'ip', 'netns', 'exec', hosts[host], 'sh', '-c',
+            needs.program('ip'), 'netns', 'exec', hosts[host], 'sh', '-c',
             'mount -t tmpfs none /dev/shm && exec "$@"', 'sh', *command])
     return start
 
@@ -177,7 +177,8 @@ def test_many_frames_arrive_whole_where_packets_are_lost(
         for arguments in (['qdisc', 'add', 'dev', 'cable', 'clsact'],
                           ['filter', 'add', 'dev', 'cable', 'ingress', 'bpf', 'direct-action',
                            'bytecode', LOSE_5_PERCENT]):
-            if subprocess.run(['tc', '-n', host, *arguments], check=False).returncode:
+            command = [needs.program('tc'), '-n', host, *arguments]
+            if subprocess.run(command, check=False).returncode:
                 pytest.skip('this machine has no BPF for tc')
     file.write_text(world_with_many_frames())
     start_bridge_on('a')
@@ -189,12 +190,11 @@ def test_many_frames_arrive_whole_where_packets_are_lost(
 @needs_fast_dds
 def test_a_discovery_server_leads_to_everything(
         start_on, start_bridge_on, start_listener_on, monkeypatch):
-    if shutil.which('fast-discovery-server') is None:
-        pytest.skip('the discovery server of Fast DDS is not installed')
     # What "fastdds discovery" of Fast DDS 3 calls for a server.
     command = [] if os.environ['ROS_DISTRO'] in PROFILES[0].distros else ['42']
     start_on(
-        'a', 'fast-discovery-server', *command, '-i', '0', '-l', ADDRESSES['a'], '-p', '11811')
+        'a', needs.program('fast-discovery-server'), *command, '-i', '0', '-l', ADDRESSES['a'],
+        '-p', '11811')
     monkeypatch.setenv('ROS_DISCOVERY_SERVER', f'{ADDRESSES["a"]}:11811')
     start_bridge_on('a')
     listener = start_listener_on('b')

@@ -13,6 +13,7 @@ import struct
 import subprocess
 import sys
 
+from processes import started
 import pytest
 
 from sdf_pose_bridge.errors import FileWriteError
@@ -256,7 +257,7 @@ def test_a_killed_process_leaves_the_old_file_or_the_new_one(path):
         '    texts.reverse()')
     for _ in range(5):
         path.write_bytes(b'old' + rest)
-        process = subprocess.Popen([sys.executable, '-c', program], stdout=subprocess.PIPE)
+        process = started([sys.executable, '-c', program], stdout=subprocess.PIPE)
         process.stdout.readline()
         with pytest.raises(subprocess.TimeoutExpired):
             process.wait(random_numbers.uniform(0.001, 0.1))

@@ -7,6 +7,7 @@ from urllib.parse import urlsplit
 
 from deadline import DEADLINE_S
 import mesh_texts
+import needs
 import pytest
 from shown_page import (
     BOX,
@@ -144,9 +145,9 @@ def test_labels_are_whole_in_a_panel_that_leaves_room_to_the_scene(page, tab, sh
 @pytest.mark.parametrize(('has_secret', 'origin'), [
     (False, None), (True, 'http://example.org'), (True, 'null')])
 def test_nobody_else_may_connect(shown, has_secret, origin):
-    viser = pytest.importorskip('viser')
-    client = pytest.importorskip('websockets.sync.client')
-    exceptions = pytest.importorskip('websockets.exceptions')
+    viser = pytest.importorskip('viser', reason='needs viser')
+    client = pytest.importorskip('websockets.sync.client', reason='needs websockets')
+    exceptions = pytest.importorskip('websockets.exceptions', reason='needs websockets')
     address = urlsplit(shown.address)
     path = address.path if has_secret else '/'
     with pytest.raises(exceptions.InvalidStatus, match='HTTP 403'):
@@ -156,10 +157,11 @@ def test_nobody_else_may_connect(shown, has_secret, origin):
 
 
 def test_picture(tmp_path):
+    needs.browser()
     (tmp_path / 'cell.sdf').write_text(TEXT)
     process = run_view(tmp_path, 'cell.sdf', '-o', 'picture.png')
     assert process.communicate(timeout=DEADLINE_S) == ('', '')
-    imageio = pytest.importorskip('imageio.v3')
+    imageio = pytest.importorskip('imageio.v3', reason='needs imageio')
     pixels = imageio.imread(tmp_path / 'picture.png').astype(int)
     assert pixels.shape == (1000, 1600, 3)
     is_red = (pixels[:, :, :1] > pixels[:, :, 1:] + 60).all(axis=2)
