@@ -4,10 +4,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
 import math
 import time
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,6 +25,16 @@ MOST_OFF_UNIT = 0.01
 """Largest difference of the norm of a quaternion from 1; it is made 1."""
 
 
+class _Group(NamedTuple):
+    """What the poses of a message have in common."""
+
+    stamp_ns: int
+    frame_id: str
+    placed: str
+    frame_dof: int
+    """The first degree of freedom that moves the frame."""
+
+
 def messages_from_poses(
     poses: Iterable[StampedPose], source: StateSource, effects: KnownEffects,
     dof: int | None = None, placements: Mapping[int, str] | None = None,
@@ -38,7 +49,7 @@ def messages_from_poses(
     for line in doubts:
         source.warn(line, partial(str, line))
     # Poses of one stamp in one frame become one message.
-    groups: dict[tuple[int, str, str], dict[int, Sequence[float]]] = {}
+    groups: dict[_Group, dict[int, Sequence[float]]] = {}
     unknown, others, carried = list[str](), list[str](), dict[int, str]()
     invalid = list[tuple[float, ...]]()
     ends_at = time.thread_time() + LONGEST_READ_S
@@ -64,7 +75,7 @@ def messages_from_poses(
             if odometry:
                 pose = pose_product(odometry.pose, pose_product(pose, odometry.model))
             placed = '' if odometry else (placements or {}).get(model, placed)
-            groups.setdefault((stamp_ns, found[0], placed), {})[model] = pose
+            groups.setdefault(_Group(stamp_ns, found[0], placed, found[1]), {})[model] = pose
     for group in groups.values():
         for model in group:
             carried.pop(model, None)
@@ -91,5 +102,21 @@ def messages_from_poses(
     return [
         Message(
             effects.of_models(tuple(sorted(group)), source),
-            np.array([group[dof] for dof in sorted(group)]), stamp_ns, frame_id, placed)
-        for (stamp_ns, frame_id, placed), group in groups.items()]
+            np.array([group[dof] for dof in sorted(group)]), *key[:3])
+        for key, group in _in_order(groups)]
+
+
+def _in_order(
+    groups: Mapping[_Group, dict[int, Sequence[float]]],
+) -> Iterator[tuple[_Group, dict[int, Sequence[float]]]]:
+    """Put poses in a frame that moves with a model after the pose of that model."""
+    places = {(key.stamp_ns, model): key for key, group in groups.items() for model in group}
+    done = set[_Group]()
+    for key in groups:
+        path = list[_Group]()
+        last: _Group | None = key
+        while last is not None and last not in done:
+            done.add(last)
+            path.append(last)
+            last = places.get((last.stamp_ns, last.frame_dof))
+        yield from ((each, groups[each]) for each in reversed(path))

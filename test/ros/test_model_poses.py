@@ -42,6 +42,14 @@ def test_frames_that_mean_the_root(models, frame_id):
     assert models.read(frame_id=frame_id)[0].frame_id == ''
 
 
+@pytest.mark.parametrize('frame_id', ['', 'p/a/b'])
+def test_a_model_is_placed_before_poses_in_its_frame(models, frame_id):
+    messages = messages_from_poses(
+        [StampedPose(5, 'p/a', 'a/b', POSE), StampedPose(5, frame_id, 'a', POSE)], models.source,
+        models.effects)
+    assert [each.frame_id for each in messages] == [frame_id, 'p/a']
+
+
 @pytest.mark.parametrize(('fields', 'line'), [
     ({'child': 'fixed'}, '/poses has poses of "fixed", which are ignored: no model has'),
     ({'child': 'aa'}, 'another body; did you mean "a"?'),
