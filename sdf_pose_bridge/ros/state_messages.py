@@ -202,7 +202,8 @@ class KnownEffects:
             found = Effect(source, self._positions.selection(names.names, model), names)
             self._make_room(BYTES_OF_OBJECTS + len(names.data) + 16 * len(names.names))
             self._effects[source, names.names] = found
-            unknown = self._positions.unknown(names.names, model)
+            unknown = [each for each in self._positions.unknown(names.names, model)
+                       if each not in self._positions.fixed_joints]
             if unknown:
                 where = f' in model "{model}"' if model else ''
                 source.warn('names', lambda: (

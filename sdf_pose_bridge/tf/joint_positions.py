@@ -132,6 +132,9 @@ class JointPositions:
         self._indices = _indices_from_names(
             scene, dofs, top_level_elements[:len(dofs)], model,
             has_models=is_spawned or bool(scene.world_names))
+        self.fixed_joints = frozenset(
+            scene.own_name(each.element) for each in scene.joints if each.type == 'fixed')
+        """Names that messages may have, too: JointStatePublisher of Gazebo sends all joints."""
         self._slides = frozenset(each.name + SLIDE_SUFFIX for each in dofs if each.is_screw)
         self._followers: dict[int, list[Follower]] = {}
         self._is_leader = np.ones(len(self.names), np.bool_)

@@ -6,7 +6,7 @@ from builtin_interfaces.msg import Time
 from deadline import wait_until
 import pytest
 from rclpy.serialization import serialize_message
-from sdf_texts import joint, world_file
+from sdf_texts import fixed_joint, joint, world_file
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
 
@@ -21,6 +21,7 @@ from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 ROBOT = f"""<model name="{{}}"><link name="base"/><link name="upper"/><link name="finger"/>
+<link name="plate"/>{fixed_joint('glue', 'base', 'plate')}
 {joint('<parent>base</parent><child>upper</child><axis><xyz>0 0 1</xyz></axis>', 'turn',
        'revolute')}
 {joint('<parent>base</parent><child>finger</child><axis><xyz>0 0 1</xyz></axis>', 'grip',
@@ -87,6 +88,12 @@ def test_a_message_that_cannot_be_used_is_reported(read, capfd, data, line):
 def test_names_are_those_of_the_joints_of_the_model(read):
     assert read(joint_state(turn=0.5, grip=0.25)) == (
         ['a/turn', 'a/grip'], [0.5, 0.25], 5 * 10**9)
+
+
+def test_a_fixed_joint_is_no_unknown_name(read, capfd):
+    assert read(joint_state(turn=0.5, glue=0.0, other=0.5))[0] == ['a/turn']
+    line = 'has "other", not the name of one moving joint in model "a"'
+    wait_until(lambda: line in capfd.readouterr().err)
 
 
 def test_a_name_of_another_model_is_reported_with_the_model(read, capfd):
