@@ -89,12 +89,25 @@ def test_the_lists_name_nothing_that_is_gone():
         assert any(command.startswith(known) for command in commands()), known
 
 
+ARM_OF_URDF = """<robot name="arm">
+<link name="base_link"/><link name="camera"/><link name="camera_optical"/>
+<joint name="mount" type="fixed">
+  <origin xyz="0.5 0 1" rpy="0 0.8 0"/>
+  <parent link="base_link"/><child link="camera"/>
+</joint>
+<joint name="rep103" type="fixed">
+  <origin rpy="-1.5707963 0 -1.5707963"/><parent link="camera"/><child link="camera_optical"/>
+</joint></robot>"""
+"""The page about calibration shows a line of it."""
+
+
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     for name in ('examples', 'docs/pictures'):
         shutil.copytree(ROOT / name, tmp_path / name)
     # As the page about calibration says.
     shutil.copy(tmp_path / 'examples/work_cell.sdf', tmp_path / 'my_cell.sdf')
+    (tmp_path / 'arm.urdf').write_text(ARM_OF_URDF)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
@@ -134,6 +147,13 @@ def shown_after(page, command):
 def test_outputs(page, command, folder, capsys):
     main(shlex.split(command)[1:])
     assert capsys.readouterr().out.splitlines() == shown_after(page, command)
+
+
+def test_the_shown_lines_of_a_urdf_change(folder, capsys):
+    (command,) = (each for each in commands() if each.startswith('sdf_pose set arm.urdf'))
+    main(shlex.split(command)[1:])
+    assert [line for line in capsys.readouterr().out.splitlines() if line[1:3] == '  ' and (
+        line[0] in '+-')] == shown_after('calibration.md', command)
 
 
 @pytest.mark.parametrize('page', ['README.md', 'python_api.md'])

@@ -4,19 +4,19 @@
 Find the change of a file that moves an element to a pose.
 
 No rule of SDFormat is implemented here: the scene has the ``<pose>`` that places the element and
-its reference, and the new numbers are checked by reading the changed file. URDF is not changed, as
-most of it is made by xacro: an error says which ``<origin>`` the file needs.
+its reference, and the new numbers are checked by reading the changed file. In URDF it is the
+``<origin>`` of a joint; for a file of xacro, an error says which one it needs.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+import contextlib
 from functools import partial
 import os
 from pathlib import Path
 from typing import NamedTuple, TypeAlias
 
-from lxml import etree
 import numpy as np
 
 from sdf_pose_bridge.errors import Place, PoseNotSetError, SdfError
@@ -29,22 +29,23 @@ from sdf_pose_bridge.geometry.poses import (
     relative_pose,
     TOLERANCE,
 )
-from sdf_pose_bridge.geometry.rotations import canonical_quaternion, rpy_from_quaternion
+from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.names import quoted_names
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.file_change import FileChange
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.limits import Usage
-from sdf_pose_bridge.sdformat.pose_writing import PoseText, shortest_decimal
+from sdf_pose_bridge.sdformat.pose_writing import PoseText
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.urdf.robot import robot_from_tree, RobotJoint
-from sdf_pose_bridge.sdformat.xml_file import bytes_from_file, xml_from_bytes, XmlFile
+from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
+from sdf_pose_bridge.sdformat.xml_tree import first_child
 
 _MOST_ATTEMPTS = 4
 
-_ORIGIN_ERROR = 5e-7
-"""Largest error of the numbers of an ``<origin>``, in metres and radians."""
+_CONVERTED_TOLERANCE = 5e-6
+"""Largest error in an included URDF, which libsdformat rounds, in metres and radians."""
 
 _OPTICAL_TOLERANCE = 2e-3
 """Largest difference of an optical frame from ``OPTICAL_POSE``, as files round right angles."""
@@ -81,7 +82,7 @@ def pose_change(
         same positions of joints.
     :param all_instances: whether other elements that the same ``<pose>`` places may move too.
     :return: the change; with it, the pose is right to 1e-9 metres and radians.
-    :raises PoseNotSetError: if no change of a single ``<pose>`` gives this pose.
+    :raises PoseNotSetError: if no change of a single ``<pose>`` or ``<origin>`` gives this pose.
     :raises SdfError: if a file can no longer be read.
     """
     change = partial(
@@ -106,11 +107,7 @@ def _change_of_own_pose(
     if cache in Path(os.path.realpath(path)).parents:
         msg = 'the file is in the cache of Gazebo Fuel; copy the model and include the copy'
         raise PoseNotSetError(msg, Place(path))
-    content = bytes_from_file(path, Usage())
-    file = xml_from_bytes(content, path)
-    if file.root.tag == 'robot':
-        raise _error_with_origin(scene, element, asked, measure, load, path, file)
-    text = PoseText(content, path)
+    text = PoseText(bytes_from_file(path, Usage()), path)
     marked = load({path: text.with_a_line_for_each_tag()})
     if marked.names != scene.names or not np.array_equal(marked.poses, scene.poses):
         msg = 'the file has changed since it was read'
@@ -119,14 +116,31 @@ def _change_of_own_pose(
     target = text.element_at_line(line)
     at = Place(path, text.line(target))
     if not all_instances:
-        _check_instances(marked, element, place, at)
+        _check_instances(marked, element, place, at, is_urdf=text.is_urdf)
+    make = partial(_change_of_text, scene, element, asked, measure, load, path)
+    if text.is_urdf:
+        return _change_of_origin(scene, element, text, make)
     reference = int(scene.references[element])
-    in_asked, current = measure(scene, reference), measure(scene, element)
-    in_reference = relative_pose(in_asked, current)
+    in_reference = relative_pose(measure(scene, reference), measure(scene, element))
     _check_joints(scene, element, in_reference, at)
-    written = text.pose(target) if is_written else in_reference
-    with_pose = text.with_pose if is_written else text.with_new_pose
-    tolerance = TOLERANCE
+    if is_written:
+        return make(reference, text.pose(target), partial(text.with_pose, target), at.line)
+    return make(reference, in_reference, partial(text.with_new_pose, target), at.line)
+
+
+def _change_of_text(
+    scene: Scene, element: int, asked: Pose, measure: Measure, load: Load, path: str,
+    reference: int, written: Pose, with_pose: Callable[[Pose, float], FileChange], line: int,
+    accuracy: float = TOLERANCE,
+) -> PoseChange:
+    """
+    Find the numbers of a pose in the file, which is relative to a reference.
+
+    :param written: the pose in the file.
+    :param with_pose: returns the change to another pose, with an error of its numbers.
+    """
+    in_asked, current = measure(scene, reference), measure(scene, element)
+    tolerance, at = TOLERANCE, Place(path, line)
     for _ in range(_MOST_ATTEMPTS):
         # The element has the pose C in the frame that the pose in the file places, most often the
         # identity. So requested = R written C, before and after the change, and C follows from the
@@ -134,17 +148,17 @@ def _change_of_own_pose(
         there = pose_product(pose_product(asked, pose_inverse(current)), in_asked)
         written = pose_product(relative_pose(in_asked, there), written)
         written = Pose(*written[:3], *canonical_quaternion(written[3:]))
-        change = with_pose(target, written, tolerance)
+        change = with_pose(written, tolerance)
         try:
             new = load({path: change.new_text})
         except SdfError as error:
             msg = f'with this pose the file would not be valid: {error.errors[0].message}'
             raise PoseNotSetError(msg, at) from error
         current, in_asked = measure(new, element), measure(new, reference)
-        if are_close(current, asked):
-            return PoseChange(change, at.line, new)
+        if max(distance_and_angle(current, asked)) <= accuracy:
+            return PoseChange(change, line, new)
         tolerance /= 10.0
-    msg = (f'no <pose> puts "{scene.names[element]}" there: the frame in which it was measured '
+    msg = (f'no pose puts "{scene.names[element]}" there: the frame in which it was measured '
            'moves with it, so choose another one; or parameters of an include place it')
     raise PoseNotSetError(msg, at)
 
@@ -175,12 +189,14 @@ def place_of_pose(scene: Scene, element: int) -> tuple[str, int, bool]:
 
 
 def _check_instances(
-    scene: Scene, element: int, place: tuple[str, int, bool], at: Place,
+    scene: Scene, element: int, place: tuple[str, int, bool], at: Place, *, is_urdf: bool,
 ) -> None:
+    # The links and joints of a URDF have other names than those with which they share a pose.
     others = [
         scene.names[other] for other in range(len(scene.names))
         if other != element and scene.parents[other] >= 0
-        and place_of_pose(scene, other) == place]
+        and place_of_pose(scene, other) == place
+        and (scene.own_name(other) == scene.own_name(element) or not is_urdf)]
     if others:
         msg = (f'the same pose in the file also places {quoted_names(others)}, '
                'which would move too')
@@ -198,39 +214,37 @@ def _check_joints(scene: Scene, element: int, in_reference: Pose, at: Place) -> 
         raise PoseNotSetError(msg, at)
 
 
-def _error_with_origin(
-    scene: Scene, element: int, asked: Pose, measure: Measure, load: Load, path: str,
-    file: XmlFile,
-) -> PoseNotSetError:
-    """Find the ``<origin>`` of a joint of URDF that moves an element to a pose."""
-    sources = Sources()
+def _change_of_origin(
+    scene: Scene, element: int, text: PoseText, make: Callable[..., PoseChange],
+) -> PoseChange:
+    """Find the change of the ``<origin>`` of a joint of URDF that moves an element to a pose."""
+    sources, path = Sources(), scene.place(element).file
     sources.add_path(path)
-    sources.add_tree(path, file.root, file.lines)
-    robot = robot_from_tree(file.root, sources, is_included=scene.urdf_root is None)
+    sources.add_tree(path, text.root, {})
+    is_included = scene.urdf_root is None
+    robot = robot_from_tree(text.root, sources, is_included=is_included)
     name = scene.own_name(element)
     scope = scene.names[element].removesuffix(name)
-    old = measure(scene, element)
     for joint in _joints_to_move(name, robot.parent_joints):
-        parent = scope + joint.parent
         # The link "world" is the frame of the model.
-        in_asked = measure(scene, scene.index(parent, world=scene.world_of(element)) if (
-            scene.has(parent)) else int(scene.parents[element]))
-        # The element keeps its pose in the frame that the origin places.
-        in_element = pose_product(pose_inverse(relative_pose(in_asked, old)), joint.origin)
-        pose = pose_product(relative_pose(in_asked, asked), in_element)
-        words = [shortest_decimal(number, _ORIGIN_ERROR) for number in (
-            *pose[:3], *rpy_from_quaternion(pose[3:]))]
-        origin = etree.Element('origin', xyz=' '.join(words[:3]), rpy=' '.join(words[3:]))
-        # The first ``<origin>`` is read.
-        joint.xml.insert(0, origin)
-        new = load({path: etree.tostring(file.root)})
-        difference = max(distance_and_angle(measure(new, element), asked))
-        if difference <= 10.0 * _ORIGIN_ERROR:
-            msg = (f'poses are not set in URDF; this one needs joint "{joint.xml.get("name")}": '
-                   f'{etree.tostring(origin).decode()}')
-            return PoseNotSetError(msg, sources.place(joint.xml))
-    msg = f'this is URDF, and no <origin> of a joint in it puts "{scene.names[element]}" there'
-    return PoseNotSetError(msg, scene.place(element))
+        parent = scene.index(scope + joint.parent, world=scene.world_of(element)) if (
+            scene.has(scope + joint.parent)) else int(scene.parents[element])
+        origin = first_child(joint.xml, 'origin')
+        number = text.number(joint.xml if origin is None else origin)
+        with contextlib.suppress(PoseNotSetError):
+            change: PoseChange = make(
+                parent, joint.origin, partial(text.with_origin, number), text.line(number),
+                _CONVERTED_TOLERANCE if is_included else TOLERANCE)
+            break
+    else:
+        msg = f'this is URDF, and no <origin> of a joint in it puts "{scene.names[element]}" there'
+        raise PoseNotSetError(msg, scene.place(element))
+    if not text.is_plain_urdf(number):
+        origin_text = change.file.new.decode(change.file.encoding).strip()
+        msg = ('a pose of xacro, or in quat_xyzw, is not set; this one needs joint '
+               f'"{joint.xml.get("name")}": {origin_text}')
+        raise PoseNotSetError(msg, Place(path, change.line))
+    return change
 
 
 def _joints_to_move(name: str, joints: Mapping[str, RobotJoint]) -> Sequence[RobotJoint]:

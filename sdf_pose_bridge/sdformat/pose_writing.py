@@ -26,10 +26,11 @@ from sdf_pose_bridge.sdformat.poses import (
     PoseFormat,
     PoseTextError,
 )
+from sdf_pose_bridge.sdformat.urdf.values import pose_from_xyz_rpy
 from sdf_pose_bridge.sdformat.values import number_from_word
 from sdf_pose_bridge.sdformat.versions import Version, version_from_text
 from sdf_pose_bridge.sdformat.xml_file import START_TAG, xml_from_bytes
-from sdf_pose_bridge.sdformat.xml_tree import text_of, words_of, written_tag
+from sdf_pose_bridge.sdformat.xml_tree import text_of, words_of, written_tag, XmlElement
 
 _FIRST_WITH_POSE = Version(1, 4)
 _TEXT_AFTER_COMMENTS = re.compile(rb'(?:\s*<!--.*?-->)*([^<]*)', re.DOTALL)
@@ -45,17 +46,19 @@ class PoseText:
 
     Elements are counted in the order of their start tags, from 0.
 
-    :raises SdfError: if it is not well-formed SDFormat 1.4 or newer.
+    :raises SdfError: if it is not well-formed URDF, or SDFormat 1.4 or newer.
     """
 
     def __init__(self, content: bytes, path: str) -> None:
         self._path, place = path, Place(path)
         file = xml_from_bytes(content, path)
-        root = file.root
+        self.root = root = file.root
+        self.is_urdf = root.tag == 'robot'
         for warning in file.warnings:
             msg = f'{warning.message}; correct this before a pose is set in the file'
             raise PoseNotSetError(msg, warning.place)
-        if version_from_text(root.get('version', ''), place) < _FIRST_WITH_POSE:
+        if not self.is_urdf and (
+                version_from_text(root.get('version', ''), place) < _FIRST_WITH_POSE):
             msg = (f'this is SDFormat {root.get("version")}, which writes poses in another way; '
                    f'convert the file to {_FIRST_WITH_POSE} or newer first')
             raise PoseNotSetError(msg, place)
@@ -89,6 +92,15 @@ class PoseText:
             msg = 'the file alone does not place this element'
             raise PoseNotSetError(msg, Place(self._path))
         return line - 1
+
+    def number(self, xml: XmlElement) -> int:
+        """Return the number of an element of :attr:`root`."""
+        return self._elements.index(xml)
+
+    def is_plain_urdf(self, element: int) -> bool:
+        """Return whether neither xacro nor an attribute for a quaternion says the numbers."""
+        return (not self._path.endswith('.xacro') and b'<xacro:' not in self._text
+                and self._elements[element].get('quat_xyzw') is None)
 
     def line(self, element: int) -> int:
         """Return the line of an element in the unchanged text."""
@@ -134,7 +146,33 @@ class PoseText:
         :param element: the number of the element that it places.
         """
         words = _words_from_pose(pose, PoseFormat(), tolerance)
-        new = b'<pose>%s</pose>' % ' '.join(words).encode()
+        return self._with_child(element, b'<pose>%s</pose>' % ' '.join(words).encode())
+
+    def with_origin(self, element: int, pose: Pose, tolerance: float) -> FileChange:
+        """Change an ``<origin>`` of URDF, or insert one into a joint as :meth:`with_new_pose`."""
+        xml = self._elements[element]
+        is_new = xml.tag != 'origin'
+        old = [word for name in ('xyz', 'rpy') for word in xml.get(name, '0 0 0').split()]
+        numbers = [number_from_word(word)[0] for word in old]
+        turn = relative_pose(pose_from_xyz_rpy(numbers[:3], numbers[3:]), pose)
+        words = _words_from_pose(
+            pose, PoseFormat(), tolerance, old,
+            keeps_rotation=max(map(abs, turn[3:6])) < _SAME_ROTATION)
+        begin, end = self._tags[element]
+        tag = b'<origin/>' if is_new else self._text[begin:end + 1]
+        # A missing attribute becomes the first one.
+        for name, new in (b'rpy', words[3:]), (b'xyz', words[:3]):
+            value = re.search(rb'\s%s\s*=\s*["\']([^"\']*)' % name, tag)
+            remaining = iter(new)
+            if value is not None:
+                tag = tag[:value.start(1)] + _WORD.sub(
+                    lambda _, words=remaining: next(words).encode(), value[1]) + tag[value.end(1):]
+            elif is_new or {*new} != {'0'}:
+                tag = tag.replace(
+                    b'<origin', b'<origin %s="%s"' % (name, ' '.join(new).encode()), 1)
+        return self._with_child(element, tag) if is_new else self._change(begin, end + 1, tag)
+
+    def _with_child(self, element: int, new: bytes) -> FileChange:
         end = self._tags[element][1]
         indentation = _INDENTATION.match(self._text, end + 1)
         if not self._is_closed(end) and indentation is not None and indentation[1]:

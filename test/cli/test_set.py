@@ -138,6 +138,27 @@ def test_what_cannot_be_set_is_one_error(refused, arguments, message):
     assert message in refused(*arguments)
 
 
+def test_the_origin_of_a_joint_of_urdf_is_written_and_nothing_else(run_main, files):
+    joint = ('  <joint name="j" type="revolute">\n    <!-- the wrist -->\n'
+             '    <parent link="a"/>\n    <child link="b"/>\n'
+             '    <limit lower="-1" upper="1.50" effort="1" velocity="1"/>\n'
+             '    <mimic joint="i"   multiplier="-1"/>\n  </joint>\n')
+    text = ('<?xml version="1.0"?>\n<robot name="r">\n  <link name="a"/><link name="b"/>\n'
+            '<link name="c"/><joint name="i" type="continuous"><parent link="a"/>'
+            f'<child link="c"/></joint>\n{joint}</robot>')
+    path = files / 'arm.urdf'
+    path.write_text(text)
+    done = run_main('set', 'arm.urdf', 'b', '500', *'00000')
+    assert 'did you mean --mm?' in done.stderr
+    done = run_main('set', 'arm.urdf', 'b', '--dry-run', '--mm', '500', *'00000')
+    assert (done.returncode, path.read_text()) == (0, text)
+    done = run_main('set', 'arm.urdf', 'b', '--mm', '500', *'00000')
+    assert '+    <origin xyz="0.5 0 0" rpy="0 0 0"/>\n' in done.stdout
+    assert path.read_text() == text.replace(
+        '    <!--', '    <origin xyz="0.5 0 0" rpy="0 0 0"/>\n    <!--')
+    assert load(path).pose('b')[:3] == (0.5, 0, 0)
+
+
 def test_an_invalid_file_is_not_written(run_main, files):
     text = (files / 'bad.sdf').read_text()
     assert run_main('set', 'bad.sdf', 'f', *'000000').returncode == 1

@@ -69,9 +69,12 @@ def test_measured_poses_go_into_the_files(
     answer = ask(client, 'gauge/zero', 0.25)
     assert (answer.success, answer.file) == (True, str(path.with_name('gauge.sdf')))
     wait_for_x(observer, 0.25, 'gauge/zero')
-    refused = ask(client, 'r/camera', 0.125, 'r/post')
-    assert not refused.success
-    assert 'joint "mount": <origin xyz="0.125 0 0" rpy="0 0 0"/>' in refused.message
+    # One of an included URDF.
+    answer = ask(client, 'r/camera', 0.125, 'r/post')
+    rig = path.with_name('rig.urdf')
+    assert (answer.success, answer.file) == (True, str(rig))
+    assert rig.read_text() == RIG.replace('type="fixed">', (
+        'type="fixed"><origin xyz="0.125 0 0" rpy="0 0 0"/>'))
     refused = ask(client, 'arm/tol', 0.0)
     assert not refused.success
     assert 'did you mean "arm/tool"' in refused.message

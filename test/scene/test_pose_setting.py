@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a file must say so that an element is at a pose."""
 
-from lxml import etree
+import re
+
 from matrices import assert_close
 import pytest
 from sdf_texts import fixed_joint, model_file, posed, world_file, write_files
@@ -34,7 +35,7 @@ ROBOT = urdf_texts.robot(
 
 @pytest.fixture(name='change')
 def make_change(tmp_path):
-    def change(name, relative_to='', *, file='m', **options):
+    def change(name, relative_to='', *, file='m', accuracy=1e-9, **options):
         path = str(tmp_path / f'{file}.sdf')
 
         def loaded(texts):
@@ -45,7 +46,7 @@ def make_change(tmp_path):
 
         scene = loaded({})
         made = pose_change(scene, scene.index(name), ASKED, measured, loaded, **options)
-        assert_at(made.scene.pose(name, relative_to), ASKED)
+        assert_at(made.scene.pose(name, relative_to), ASKED, accuracy)
         return made
     return change
 
@@ -198,21 +199,39 @@ def test_a_file_of_the_cache_of_fuel_is_refused(change, tmp_path, monkeypatch):
     ('arm', '', 'turn'),
 ])
 @pytest.mark.parametrize('is_included', [False, True])
-def test_the_origin_that_urdf_needs_is_named(
+def test_the_origin_of_a_joint_of_urdf_is_set(
         change, tmp_path, name, relative_to, joint, is_included):
     path = tmp_path / 'm.sdf'
     path.write_text(ROBOT)
     write_files(tmp_path, w=world_file('<include><uri>m.sdf</uri></include>'))
     names = [f'r::{each}' if each else '' for each in (name, relative_to)]
-    with pytest.raises(PoseNotSetError) as caught:
-        change(*names, file='w' if is_included else 'm')
-    assert f'joint "{joint}": ' in caught.value.message
-    assert (path.read_text(), caught.value.place.file) == (ROBOT, str(path))
-    robot = etree.fromstring(ROBOT)
-    xml = robot.find(f'joint[@name="{joint}"]')
-    xml.insert(0, etree.fromstring(caught.value.message.partition('": ')[2]))
-    path.write_bytes(etree.tostring(robot))
-    assert_at(load(path).pose(*names), ASKED, 3e-6)
+    made = change(*names, file='w' if is_included else 'm', accuracy=1e-5 if is_included else 1e-9)
+    assert (made.file.path, made.file.undone.new_text) == (str(path), ROBOT.encode())
+    assert joint_of(made) == joint
+
+
+def joint_of(made):
+    """Return the name of the joint in which a pose is."""
+    return re.findall(rb'<joint name="(\w+)', made.file.before)[-1].decode()
+
+
+def test_a_urdf_that_is_included_twice(change, tmp_path):
+    write_files(tmp_path, m=ROBOT, w=TWICE)
+    with pytest.raises(PoseNotSetError, match='also places "y::arm"'):
+        change('x::arm', file='w')
+    assert joint_of(change(
+        'x::arm', 'x::base', file='w', all_instances=True, accuracy=1e-5)) == 'turn'
+
+
+@pytest.mark.parametrize(('old', 'new'), [
+    ('<robot name="r">', '<robot xmlns:xacro="x" name="r"><xacro:property name="p" value="1"/>'),
+    (' rpy="0 0.3 0"/>', ' quat_xyzw="0 0.3 0 1"/>')])
+def test_the_origin_that_a_file_of_xacro_needs_is_named(change, tmp_path, old, new):
+    assert old in ROBOT
+    write_files(tmp_path, m=ROBOT.replace(old, new))
+    with pytest.raises(PoseNotSetError, match='joint "mount": <origin ') as caught:
+        change('r::eye', 'r::arm')
+    assert 'xyz="0.5 -1 2"' in caught.value.message
 
 
 @pytest.mark.parametrize(('old', 'new', 'name', 'joint'), [
@@ -228,5 +247,4 @@ def test_the_origin_that_urdf_needs_is_named(
 def test_joint_that_can_place_a_link(change, tmp_path, old, new, name, joint):
     robot = ROBOT if '7' not in new else ROBOT.replace('"base"', '"world"')
     write_files(tmp_path, m=robot.replace(old, new))
-    with pytest.raises(PoseNotSetError, match=f'joint "{joint}"'):
-        change(f'r::{name}')
+    assert joint_of(change(f'r::{name}')) == joint

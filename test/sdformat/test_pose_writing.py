@@ -81,6 +81,30 @@ def test_a_new_pose_is_indented_like_a_child(old, new):
     assert change.new_text.decode() == changed_text
 
 
+@pytest.mark.parametrize(('old', 'new'), [
+    ('<origin xyz="0 0 0" rpy="0 0 0"/>', '<origin xyz="1.5 -2 0.25" rpy="0 0 1.570796327"/>'),
+    ("<origin\n rpy = '0 0 -1.0' a='>'\txyz='0  0 9 ' ></origin >",
+     "<origin\n rpy = '0 0 1.570796327' a='>'\txyz='1.5  -2 0.25 ' ></origin >"),
+    ('<origin xyz="1.50 0 0"/><origin xyz="9 9 9"/>',
+     '<origin rpy="0 0 1.570796327" xyz="1.50 -2 0.25"/><origin xyz="9 9 9"/>'),
+    ('<origin rpy="6.283185307179586 0 7.853981633974483"/>',
+     '<origin xyz="1.5 -2 0.25" rpy="6.283185307179586 0 7.853981633974483"/>'),
+    ('<origin/>', '<origin xyz="1.5 -2 0.25" rpy="0 0 1.570796327"/>'),
+])
+def test_only_the_numbers_of_an_origin_change(old, new):
+    text = ('<!-- é --><robot name="r"><joint name="j"><axis xyz="0 0 1"/>{}<!-- <origin/> --> '
+            '</joint>\r\n</robot>')
+    change = PoseText(text.replace('{}', old).encode(), 'file.urdf').with_origin(3, NEW, 1e-9)
+    assert change.new_text.decode() == text.replace('{}', new)
+
+
+def test_a_new_origin_is_indented_like_a_child():
+    text = '<robot name="r">\n  <joint name="j">\n    <!-- <origin/> -->\n  </joint>\n</robot>'
+    change = PoseText(text.encode(), 'file.urdf').with_origin(1, NEW, 1e-9)
+    assert change.new_text.decode() == text.replace(
+        '    <!--', '    <origin xyz="1.5 -2 0.25" rpy="0 0 1.570796327"/>\n    <!--')
+
+
 @pytest.mark.parametrize(('text', 'reason'), [
     (model_file('<link name="l"><pose><![CDATA[0 0 0 0 0 0]]></pose></link>'), 'plain text'),
     (model_file('<link name="l"><pose>&#48; 0 0 0 0 0</pose></link>'), 'plain text'),

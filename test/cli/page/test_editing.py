@@ -20,6 +20,7 @@ from shown_page import (
     strip_button,
     TEXT,
     type_over,
+    view_of,
     wait_for_name_at,
     wait_until_movable,
 )
@@ -104,6 +105,29 @@ def test_frame_is_dragged_and_written(page, shown):
     press(page, 'undo the last write')
     page.wait_for(f"!{strip_button('undo the last write')}")
     assert shown.file.read_text() == TEXT
+
+
+URDF = """<robot name="r">
+<link name="base"/><link name="tool"/>
+<joint name="j" type="fixed">
+  <!-- measured --><origin rpy="0 0 0" xyz="1 0 0"/><parent link="base"/><child link="tool"/>
+</joint></robot>"""
+
+
+def test_the_origin_of_a_urdf_is_written(tab, tmp_path):
+    (tmp_path / 'cell.sdf').write_text(URDF)
+    with view_of(tmp_path, '--edit') as address:
+        tab.open(address)
+        select(tab, 'tool')
+        enter(tab, control('x [m]'), '0.25')
+        tab.wait_for(strip_button('write to file'))
+        press(tab, 'write to file')
+        tab.wait_for("""document.querySelector('.strip').innerText.includes(
+            'written to cell.sdf:4')""")
+        assert (tmp_path / 'cell.sdf').read_text() == URDF.replace('xyz="1 ', 'xyz="0.25 ')
+        press(tab, 'undo the last write')
+        tab.wait_for(f"!{strip_button('undo the last write')}")
+        assert (tmp_path / 'cell.sdf').read_text() == URDF
 
 
 def test_what_moves_is_drawn_and_named_before_it_is_written(sized_page, shown):
