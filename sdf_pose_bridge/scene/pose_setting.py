@@ -44,9 +44,6 @@ from sdf_pose_bridge.sdformat.xml_tree import first_child
 
 _MOST_ATTEMPTS = 4
 
-_CONVERTED_TOLERANCE = 5e-6
-"""Largest error in an included URDF, which libsdformat rounds, in metres and radians."""
-
 _OPTICAL_TOLERANCE = 2e-3
 """Largest difference of an optical frame from ``OPTICAL_POSE``, as files round right angles."""
 
@@ -131,7 +128,6 @@ def _change_of_own_pose(
 def _change_of_text(
     scene: Scene, element: int, asked: Pose, measure: Measure, load: Load, path: str,
     reference: int, written: Pose, with_pose: Callable[[Pose, float], FileChange], line: int,
-    accuracy: float = TOLERANCE,
 ) -> PoseChange:
     """
     Find the numbers of a pose in the file, which is relative to a reference.
@@ -155,7 +151,7 @@ def _change_of_text(
             msg = f'with this pose the file would not be valid: {error.errors[0].message}'
             raise PoseNotSetError(msg, at) from error
         current, in_asked = measure(new, element), measure(new, reference)
-        if max(distance_and_angle(current, asked)) <= accuracy:
+        if are_close(current, asked):
             return PoseChange(change, line, new)
         tolerance /= 10.0
     msg = (f'no pose puts "{scene.names[element]}" there: the frame in which it was measured '
@@ -221,8 +217,7 @@ def _change_of_origin(
     sources, path = Sources(), scene.place(element).file
     sources.add_path(path)
     sources.add_tree(path, text.root, {})
-    is_included = scene.urdf_root is None
-    robot = robot_from_tree(text.root, sources, is_included=is_included)
+    robot = robot_from_tree(text.root, sources, is_included=scene.urdf_root is None)
     name = scene.own_name(element)
     scope = scene.names[element].removesuffix(name)
     for joint in _joints_to_move(name, robot.parent_joints):
@@ -233,8 +228,7 @@ def _change_of_origin(
         number = text.number(joint.xml if origin is None else origin)
         with contextlib.suppress(PoseNotSetError):
             change: PoseChange = make(
-                parent, joint.origin, partial(text.with_origin, number), text.line(number),
-                _CONVERTED_TOLERANCE if is_included else TOLERANCE)
+                parent, joint.origin, partial(text.with_origin, number), text.line(number))
             break
     else:
         msg = f'this is URDF, and no <origin> of a joint in it puts "{scene.names[element]}" there'

@@ -99,8 +99,10 @@ class PoseText:
 
     def is_plain_urdf(self, element: int) -> bool:
         """Return whether neither xacro nor an attribute for a quaternion says the numbers."""
-        return (not self._path.endswith('.xacro') and b'<xacro:' not in self._text
-                and self._elements[element].get('quat_xyzw') is None)
+        tags = map(written_tag, self._elements)
+        return (not self._path.endswith('.xacro') and not any(
+            tag.startswith('xacro:') for tag in tags)
+            and self._elements[element].get('quat_xyzw') is None)
 
     def line(self, element: int) -> int:
         """Return the line of an element in the unchanged text."""
