@@ -70,7 +70,8 @@ class PoseReader:
                 msg = f'{source.name} has no {what}, so leave out --{unit.text}'
                 raise CommandError(msg)
         return source._replace(
-            angle=angle or source.angle, length=length or source.length)
+            angle=angle or source.angle, length=length or source.length,
+            said_units=(angle, length))
 
 
 def poses_from_rows(rows: Sequence[Sequence[float]] | Floats, source: Format) -> PoseArray:

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import argparse
 from functools import partial
+import re
 import sys
 
 from sdf_pose_bridge.cli.arguments import add_file_arguments
@@ -53,11 +54,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--format', metavar='FORMAT',
         help='format of the numbers; by default the one that the text names, or sdf_rpy: x y z '
-             'roll pitch yaw in metres and radians. With a format of rotations the position stays')
+             'roll pitch yaw in metres and radians. With a format of rotations the position stays, '
+             'with three numbers and no format the rotation')
     add_given_unit_arguments(parser)
     parser.add_argument(
         '--force', action='store_true',
-        help='write numbers that are probably in another unit, or no unit quaternion')
+        help='write a quaternion whose length is not 1')
     parser.add_argument(
         '--dry-run', action='store_true', help='print the change without writing it')
     parser.add_argument(
@@ -71,13 +73,21 @@ def run(options: argparse.Namespace) -> int:
         msg = 'the standard input cannot be changed; name a file'
         raise CommandError(msg)
     reader = PoseReader(options.format, options, FORMATS['sdf_rpy'])
-    numbers, source, notes = reader.read(' '.join(options.numbers))
+    text = ' '.join(options.numbers)
+    is_position = not options.format and len(re.findall(r'[^\s,;()\[\]{}]+', text)) == 3
+    if is_position:
+        if options.given_angle:
+            msg = f'three numbers are a position, so leave out --{options.given_angle.text}'
+            raise CommandError(msg)
+        text += ', 0, 0, 0' if ',' in text else ' 0 0 0'
+    numbers, source, notes = reader.read(text)
     for note in notes:
         print_message(options.command, note)
     given = Pose(*poses_from_rows([numbers], source)[0].tolist())
-    doubt = source.doubt(numbers, is_written=True, dashes='--')
-    if doubt and not options.force:
-        msg = f'{doubt} (--force writes them as they are)'
+    if doubt := source.doubt(numbers, is_written=not options.force, dashes='--'):
+        units = (source.angle, source.length if source.position else None)
+        keep = ' '.join(f'--{unit.text}' for unit in units if unit) if '?' in doubt else '--force'
+        msg = f'{doubt} ({keep} writes them as they are)'
         raise CommandError(msg)
     scene = scene_of(options.files[0], options)
 
@@ -90,8 +100,9 @@ def run(options: argparse.Namespace) -> int:
     part = options.by or options.frame
     if options.by and scene.has(scoped_name(own_name, options.by)):
         part = scoped_name(own_name, options.by)
-    placed = given if source.position else lookup.pose(part, options.relative_to).pose
-    asked = Pose(*placed[:3], *given[3:])
+    current = lookup.pose(part, options.relative_to).pose
+    asked = Pose(*(given if source.position else current)[:3],
+                 *(current if is_position else given)[3:])
     change = pose_change(
         scene, element, pose_product(asked, lookup.pose_of_element(element, part)), measured,
         partial(scene_from_file, options.files[0], options), all_instances=options.all_instances)

@@ -182,7 +182,7 @@ def _pose_from_request(request: SetPose.Request, loaded: LoadedScene) -> Pose:
     except PoseFormatError as error:
         raise PoseNotSetError(str(error), place) from error
     if doubt := POSE_FORMATS['sdf_quat_xyzw'].doubt(numbers, is_written=True):
-        msg = f'{doubt} ("sdf_pose set --force" writes it)'
+        msg = f'{doubt} ("sdf_pose set" writes it with --metres or --force)'
         raise PoseNotSetError(msg, place)
     return pose
 

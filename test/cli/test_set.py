@@ -2,10 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """``sdf_pose set``: the file, what is printed, and the exit code."""
 
+import math
+
 import pytest
 from sdf_texts import INCLUDES_LEAF, LINK, link_with, model_file, write_files
 
 from sdf_pose_bridge import load
+from sdf_pose_bridge.geometry.pose_texts import FORMATS
 
 
 @pytest.fixture
@@ -89,20 +92,57 @@ def test_a_pasted_text_is_set(run_main, path):
     assert '<pose>0.1 0 0.3 0 0 0.5</pose>' in path.read_text()
 
 
-@pytest.mark.parametrize(('numbers', 'option', 'written'), [
-    ('0 0 0 0 0 90', '--degrees', '0 0 0 0 0 1.570796327'),
-    ('300 0 0 0 0 0', '--mm', '0.3 0 0 0 0 0')])
+@pytest.mark.parametrize(('numbers', 'option', 'other', 'written'), [
+    ('0 0 0 0 0 90', '--degrees', '--radians', '0 0 0 0 0 1.570796327'),
+    ('300 0 0 0 0 0', '--mm', '--metres', '0.3 0 0 0 0 0')])
 def test_numbers_in_another_unit_are_asked_about(
-        set_pose, refused, path, numbers, option, written):
-    assert refused('f', *numbers.split()).endswith(
-        f'did you mean {option}? (--force writes them as they are)')
+        set_pose, refused, path, numbers, option, other, written):
+    for force in ((), ('--force',)):
+        assert refused('f', *force, *numbers.split()).endswith(
+            f'did you mean {option}? (--radians --metres writes them as they are)')
     set_pose('f', option, *numbers.split())
     assert f'<pose>{written}</pose>' in path.read_text()
+    set_pose('f', other, *numbers.split())
+    assert load(path).pose('f')[:3] == pytest.approx((float(numbers.split()[0]), 0, 0))
 
 
-def test_numbers_that_are_meant_are_written(set_pose, path):
-    set_pose('f', '--force', *'300 0 0 0 0 0'.split())
-    assert '<pose>300 0 0 0 0 0</pose>' in path.read_text()
+def test_units_that_were_given_are_not_asked_about(set_pose, refused, path):
+    small = '0.8 0 0 0 0 2.33'.split()
+    set_pose('f', '--mm', '--degrees', *small)
+    assert '<pose>0.0008 0 0 0 0 0.0406661716</pose>' in path.read_text()
+    # The other unit is asked about.
+    assert refused('f', '--metres', '--format', 'sdf_rpy_degrees', *small).endswith(
+        '; did you mean --radians? (--degrees --metres writes them as they are)')
+    assert refused('f', '--degrees', '--format', 'franka_measured', *small).endswith(
+        '; did you mean --metres? (--degrees --mm writes them as they are)')
+
+
+@pytest.mark.parametrize('name', [name for name, each in FORMATS.items() if each.angle])
+def test_a_unit_of_angles_is_used_whatever_the_format_has(set_pose, path, name):
+    source, written = FORMATS[name], []
+    for unit, angle in (('radians', 0.25), ('degrees', math.degrees(0.25))):
+        row = ['0'] * source.row_length
+        row[source.columns[0]] = repr(angle)
+        set_pose('f', '--format', name, f'--{unit}', *row)
+        written.append(path.read_text())
+    assert written[0] == written[1]
+    assert '.25' in written[0] or '.785' in written[0]
+
+
+@pytest.mark.parametrize(('numbers', 'written'), [
+    (['1', '-2', '3'], '1 -2 3'), (['--mm', '1', '2', '-3'], '0.001 0.002 -0.003'),
+    (['[0.5, 2, 3]'], '0.5 2 3')])
+def test_three_numbers_are_the_position(set_pose, path, numbers, written):
+    set_pose('f', '--format', 'rpy_degrees', '0', '0', '45')
+    set_pose('f', *numbers)
+    assert f'<pose>{written} 0 0 0.785398163' in path.read_text()
+
+
+def test_three_numbers_of_a_part_leave_its_rotation(set_pose, path):
+    set_pose('m', '--by', 'l', '--format', 'rpy_degrees', '0', '0', '45')
+    set_pose('m', '--by', 'l', '--relative-to', 'f', '0', '4', '0')
+    x, y, z, *quat = load(path).pose('m::l')
+    assert (x, y, z, *quat) == pytest.approx((1, 6, 3, 0, 0, 0.3826834, 0.9238795))
 
 
 @pytest.mark.parametrize('part', ['tip', 'm::tip', 'm/tip'])
@@ -126,6 +166,8 @@ def test_the_camera_moves_where_its_optical_frame_was_measured(set_pose, path):
 
 @pytest.mark.parametrize(('arguments', 'message'), [
     (['f', *'00000'], 'sdf_rpy has 6 numbers'),
+    (['f', '1,5 2'], 'decimals need points'),
+    (['f', '--degrees', *'000'], 'three numbers are a position, so leave out --degrees'),
     (['f', *'00000', 'x'], "'x' is not a number"),
     (['f', *'00000', 'nan'], 'it must be a finite number'),
     (['f', '--format', 'sdf_quat_xyzw', *'0000000'], 'is zero, which is not a rotation'),
