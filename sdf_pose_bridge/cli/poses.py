@@ -5,6 +5,9 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
+import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,11 +21,13 @@ from sdf_pose_bridge.cli.arguments import (
 )
 from sdf_pose_bridge.cli.frames import Frame, print_frames, TableRow
 from sdf_pose_bridge.cli.loading import sdf_name
-from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.errors import JointPositionError, SdfWarning
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.tf.joint_positions import scene_at_positions
+from sdf_pose_bridge.tf.joint_motion import JointMotion
+from sdf_pose_bridge.tf.joint_positions import JointPositions, scene_at_positions
+from sdf_pose_bridge.tf.parents import tf_parents_from_scene
 
 HELP = 'print the poses of files'
 DESCRIPTION = (
@@ -42,9 +47,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--joint', metavar='NAME=VALUE', action='append', default=[], dest='positions',
         type=argument_type(
-            _position_from_text, 'is not NAME=VALUE with a number, such as elbow=1.57'),
-        help='position of a joint, in radians or metres; all others stay at zero. May be '
-             'repeated. Names are as in joint_states: elbow, arm/elbow, wrist_axis2, ball_roll')
+            _position_from_text, 'is not NAME=VALUE with a number, such as elbow=90deg'),
+        help='position of a joint, such as 90deg, 1.57rad, 5mm or 0.005m, by default in radians '
+             'or metres; all others stay at zero. May be repeated. Names are as in joint_states: '
+             'elbow, arm/elbow, wrist_axis2, ball_roll')
     add_kinds_argument(parser, 'print only')
     add_unit_arguments(parser)
 
@@ -55,17 +61,58 @@ def run(options: argparse.Namespace) -> int:
         options, 'elements', ('file', 'world', 'kind', 'name', *Pose._fields), _elements)
 
 
-def _position_from_text(text: str) -> tuple[str, float]:
+class _Position(NamedTuple):
+    name: str
+    value: float
+    unit: str
+    """``rad``, ``deg``, ``m`` or ``mm``; empty if it is not given."""
+
+
+def _position_from_text(text: str) -> _Position:
     name, _, value = text.rpartition('=')
-    return name, float(value)
+    unit = next((unit for unit in ('rad', 'deg', 'mm', 'm') if value.endswith(unit)), '')
+    return _Position(name, float(value.removesuffix(unit)), unit)
+
+
+def _at_positions(
+    scene: Scene, given: Sequence[_Position], warnings: list[SdfWarning],
+) -> Scene:
+    """Return the scene with its joints at given positions; warn of doubtful units."""
+    motion = JointMotion(scene, tf_parents_from_scene(scene))
+    values = {position.name: position.value for position in given}
+    selection = JointPositions(scene, motion).selection([position.name for position in given])
+    doubts, names = [], dict[int, str]()
+    for row, index in zip(selection.rows.tolist(), selection.dofs.tolist(), strict=True):
+        (name, value, unit), dof = given[row], motion.dofs[index]
+        place = scene.place(dof.joint.element)
+        if index in names:
+            msg = f'"{names[index]}" and "{name}" are one joint, which has one position'
+            raise JointPositionError(msg, place)
+        names[index] = name
+        units = {'rad': 1.0, 'deg': math.radians(1.0)} if dof.rad_per_unit else {
+            'm': 1.0, 'mm': 1e-3}
+        if unit and unit not in units:
+            msg = f'the position of "{name}" is in {" or ".join(units)}, not in {unit}'
+            raise JointPositionError(msg, place)
+        values[name] = value * units.get(unit, 1.0)
+        lower, upper = dof.axis.lower, dof.axis.upper
+        is_doubtful = abs(value) > 2.0 * math.pi if math.isinf(upper - lower) else (
+            not lower <= value <= upper and lower <= math.radians(value) <= upper)
+        if dof.rad_per_unit and not unit and is_doubtful:
+            doubts.append(SdfWarning('WARNING', (
+                f'the position {value:g} of "{name}" is {value:g} rad, which are '
+                f'{math.degrees(value):g} degrees; did you mean {name}={value:g}deg? '
+                f'{name}={value:g}rad confirms the unit'), place))
+    moved = scene_at_positions(scene, values)
+    warnings[:] = *moved.warnings, *doubts
+    return moved
 
 
 def _elements(
     scene: Scene, options: argparse.Namespace, warnings: list[SdfWarning],
 ) -> list[Frame]:
     if options.positions:
-        scene = scene_at_positions(scene, dict(options.positions))
-        warnings[:] = scene.warnings
+        scene = _at_positions(scene, options.positions, warnings)
     elements: list[Frame] = []
     reference = sdf_name(scene, options.relative_to)
     chosen = np.flatnonzero(np.isin(scene.kinds, options.kinds)).tolist()

@@ -54,8 +54,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--format', metavar='FORMAT',
         help='format of the numbers; by default the one that the text names, or sdf_rpy: x y z '
-             'roll pitch yaw in metres and radians. With a format of rotations the position stays, '
-             'with three numbers and no format the rotation')
+             'roll pitch yaw in metres and radians. With a format of rotations the position '
+             'stays, with three numbers and no format the rotation')
     add_given_unit_arguments(parser)
     parser.add_argument(
         '--force', action='store_true',

@@ -159,7 +159,8 @@ class Format(NamedTuple):
             ('the angles {} are {}', self.angle, numbers),
             ('the position {} is in {}', self.length, rows[:, self.position]),
         ):
-            if unit and unit not in self.said_units and (unlikely := part[are_unlikely(part, unit)]).size:
+            if unit and unit not in self.said_units and (
+                    unlikely := part[are_unlikely(part, unit)]).size:
                 reasons.append(clause.format(_shown(unlikely[0]), unit.text))
                 likely_units.append(dashes + UNLIKELY[unit][-1].text)
         if is_written and self.rotation is _QUATERNION:

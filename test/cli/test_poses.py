@@ -3,6 +3,7 @@
 """``sdf_pose poses``: tables, JSON and the choice of elements and frames."""
 
 import json
+import math
 
 import pytest
 from sdf_texts import joint, LINK, model_file, posed, TWO_LINKS
@@ -79,6 +80,7 @@ ARM = model_file(
 @pytest.mark.parametrize(('argument', 'words'), [
     ('j', 'is not NAME=VALUE'), ('j=x', 'is not NAME=VALUE'), ('=1', '"" is not the name of'),
     ('i=1', '"i" is not the name of'), ('j=nan', 'must be finite'),
+    ('j=1deg', 'the position of "j" is in m or mm, not in deg'), ('j=1 deg m', 'is not NAME=VA'),
 ])
 def test_wrong_position_of_a_joint_is_refused(run_on, argument, words):
     done = run_on(ARM, 'poses', '--joint', argument)
@@ -87,14 +89,43 @@ def test_wrong_position_of_a_joint_is_refused(run_on, argument, words):
 
 
 def test_poses_at_positions_of_joints(run_on):
-    done = run_on(ARM, 'poses', '--json', '--joint', 'j=7', '--joint', 'm::j=0.5')
-    poses = {each['name']: each['pose'] for each in json.loads(done.stdout)['elements']}
-    assert poses['m::b'][:3] == [0.0, 0.0, 0.5]
+    for text in ('m::j=0.5', 'j=500mm', 'm/j=5e-1m'):
+        done = run_on(ARM, 'poses', '--json', '--joint', text)
+        poses = {each['name']: each['pose'] for each in json.loads(done.stdout)['elements']}
+        assert poses['m::b'][:3] == [0.0, 0.0, 0.5]
+
+
+@pytest.mark.parametrize('other', ['j', 'm::j'])
+def test_one_joint_has_one_position(run_on, other):
+    done = run_on(ARM, 'poses', '--joint', 'j=7', '--joint', f'{other}=7')
+    assert (done.returncode, done.stdout) == (1, '')
+    assert f'"j" and "{other}" are one joint' in done.stderr
+
+
+LIMIT = '<axis><xyz>0 0 1</xyz><limit><lower>{}</lower><upper>{}</upper></limit></axis></joint>'
+
+
+@pytest.mark.parametrize(('limits', 'text', 'yaw_rad', 'is_asked'), [
+    (None, 'j=90', 90 - 28 * math.pi, True),
+    (None, 'j=90rad', 90 - 28 * math.pi, False),
+    (None, 'j=90deg', math.pi / 2, False),
+    (None, 'j=-6.3', 2 * math.pi - 6.3, True), (None, 'j=6.2', -0.0831853, False),
+    ((-2, 2), 'j=90', 90 - 28 * math.pi, True), ((-2, 2), 'j=1.9', 1.9, False),
+    # Neither in radians nor in degrees.
+    ((-2, 2), 'j=180', 180 - 58 * math.pi, False),
+])
+def test_a_position_that_is_probably_in_degrees(run_on, limits, text, yaw_rad, is_asked):
+    turning = ARM.replace('prismatic', 'revolute').replace(
+        '</joint>', LIMIT.format(*limits) if limits else '</joint>')
+    done = run_on(turning, 'poses', '--radians', '--kinds', 'link', '--joint', text)
+    assert float(done.stdout.split()[-1]) == pytest.approx(yaw_rad, abs=0.06)
+    assert (f'did you mean {text}deg? {text}rad confirms the unit' in done.stderr) == is_asked
+    assert ('did you mean' in done.stderr) == is_asked
 
 
 @pytest.mark.parametrize('arguments', [(), ('--relative-to', 'none')])
 def test_a_position_beyond_the_limits_of_its_joint_is_a_warning(run_on, arguments):
-    limit = '<axis><xyz>0 0 1</xyz><limit><lower>0</lower><upper>1</upper></limit></axis></joint>'
+    limit = LIMIT.format(0, 1)
     done = run_on(
         ARM.replace('</joint>', limit), 'poses', '--json', '--joint', 'j=2', *arguments)
     (warning,) = json.loads(done.stdout)['warnings']
