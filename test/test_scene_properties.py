@@ -21,9 +21,9 @@ ORDERS = st.randoms(use_true_random=False).map(
 
 def assert_same_scene(first, second, tolerance=1e-9):
     """Check that two scenes have the same names and poses, in whatever order."""
-    # The first link of a model is the parent of others in TF.
+    # The first link of a model is the parent of others in TF, and the first joint moves a link.
     assert [each for each in differences_of_scenes(first, second, tolerance=tolerance)
-            if each.change is not Change.PARENT] == []
+            if each.change in (Change.ADDED, Change.REMOVED, Change.MOVED)] == []
 
 
 @given(random_scenes())

@@ -26,7 +26,7 @@ MOST_OFF_UNIT = 0.01
 
 
 class _Group(NamedTuple):
-    """What the poses of a message have in common."""
+    """The stamp and the frame of some poses of a message."""
 
     stamp_ns: int
     frame_id: str
