@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""A source of poses of two models, one in the other."""
+"""A source of poses of two models, one in the other, and plugins that send odometry of them."""
 
 import re
 
@@ -16,11 +16,22 @@ from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
+
+def plugin(system, parameters=''):
+    return f'<plugin filename="f" name="gz::sim::systems::{system}">{parameters}</plugin>'
+
+
 TEXT = world_file(
     '<model name="a"><link name="l"/><link name="k"/>' + joint(
         '<parent>l</parent><child>k</child><axis><xyz>1 0 0</xyz></axis>', 'j', 'prismatic')
+    + plugin('DiffDrive', '<odom_topic>wheels</odom_topic><frame_id>o</frame_id>')
+    + plugin('OdometryPublisher', '<odom_frame>o</odom_frame><xyz_offset>0 -1 0</xyz_offset>')
+    # It moves with the link k of the model a.
+    + '<model name="c"><pose>4 0 0 0 0 0</pose><link name="l"/>'
+    + plugin('DiffDrive', '<frame_id>of_c</frame_id>') + '</model>'
+    + joint('<parent>k</parent><child>c::l</child>', 'w', 'fixed')
     + '<model name="b"><pose>0 3 0 0 0 0</pose><link name="l"/>'
-    '<plugin filename="f" name="gz::sim::systems::DiffDrive"/></model></model>'
+    + plugin('DiffDrive') + '</model></model>'
     '<model name="fixed"><static>true</static><pose>0 2 0 0 0 0</pose><link name="l"/></model>')
 POSE = (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)
 

@@ -55,10 +55,14 @@ def messages_from_poses(
     ends_at = time.thread_time() + LONGEST_READ_S
     for stamp_ns, frame_id, child, numbers in poses:
         model, placed = effects.placed_frame(child, dof)
+        sender = dof if dof is not None else effects.models_of_odometry.get(
+            (source.name, frame_id), model)
+        odometry = None if sender is None else effects.odometry_in(frame_id, sender, source)
+        if odometry:
+            model = sender
         if model is None:
             unknown.append(child)
             continue
-        odometry = effects.odometry.get((model, frame_id))
         found = ('', NO_DOF) if odometry else effects.pose_frame(frame_id, ends_at, source)
         if found is None:
             pass  # there is time when the next message comes
@@ -74,7 +78,8 @@ def messages_from_poses(
             pose = Pose(x, y, z, *canonical_quaternion(quat))
             if odometry:
                 pose = pose_product(odometry.pose, pose_product(pose, odometry.model))
-            placed = '' if odometry else (placements or {}).get(model, placed)
+            placed = odometry.nested_model if odometry else (
+                placements or {}).get(model, placed)
             groups.setdefault(_Group(stamp_ns, found[0], placed, found[1]), {})[model] = pose
     for group in groups.values():
         for model in group:

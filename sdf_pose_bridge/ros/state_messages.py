@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 import re
@@ -27,6 +28,7 @@ from sdf_pose_bridge.ros.setting_rules import MOST_CHARACTERS
 from sdf_pose_bridge.tf.joint_motion import NO_DOF
 from sdf_pose_bridge.tf.joint_positions import LARGEST_POSITION, Selection
 from sdf_pose_bridge.tf.lookup import PoseLookup
+from sdf_pose_bridge.tf.odometry import Odometry
 
 MOST_BYTES = 4_000_000
 """Largest size of all names and rows that are kept. A message has a quarter of it at most."""
@@ -173,14 +175,24 @@ class KnownEffects:
         """The degrees of freedom of free models by their names and frame ids, and of others."""
         self.only_model = count if len(free_models) == 1 else None
         """The degree of freedom of the only free model; None if there is not exactly one."""
-        self.odometry = tree.odometry
+        self._odometry = tree.odometry
+        models = defaultdict[tuple[str, str], set[int]](set)
+        self._meanings = defaultdict[tuple[int, str], dict[Odometry, str]](dict)
+        for (dof, frame_id, topic), odometry in tree.odometry.items():
+            models[topic, frame_id].add(dof)
+            if topic:
+                self._meanings[dof, frame_id].setdefault(odometry, topic)
+        self.models_of_odometry = {
+            key: dofs.pop() for key, dofs in models.items() if len(dofs) == 1}
+        """The degrees of freedom of free models by topics and frames of their odometry."""
         self.placements = {
             dof: frame for dof, name in self._scoped_names.items()
             if placement and lookup.knows(frame := scoped_name(name, placement))}
         """The frames that poses on topics are of, if not model frames, by the free models."""
         doubted = [
-            frame_id for (_, frame_id), each in self.odometry.items()
-            if each.is_of_wheels and any(pattern.match(frame_id) for pattern in root_patterns)]
+            frame_id for (_, frame_id, topic), each in self._odometry.items()
+            if not topic and each.is_of_wheels
+            and any(pattern.match(frame_id) for pattern in root_patterns)]
         self.doubts: list[str] = []
         """Warnings about parameters, for the first message."""
         if doubted:
@@ -260,6 +272,25 @@ class KnownEffects:
         if model is None or dof not in (None, model):
             return None, ''
         return model, name
+
+    def odometry_in(self, frame_id: str, dof: int, source: StateSource) -> Odometry | None:
+        """
+        Find the odometry of plugins that a message has.
+
+        Another topic than those of the plugins in this frame has that of the first plugin.
+
+        :param dof: the free model.
+        :return: the odometry, or None if no plugin sends it in this frame.
+        """
+        topics = self._meanings.get((dof, frame_id), {})
+        found = self._odometry.get((dof, frame_id, source.name))
+        if found is None and len(topics) > 1:
+            names = names_in_line([*topics.values()])
+            source.warn_once('odometry', [frame_id], lambda: (
+                f'{source.name} has poses in {names_in_line([frame_id])}, the frame of the '
+                f'odometry of several plugins, and is none of their topics {names}; its poses '
+                'count as on the first of these; give each plugin a frame of its own in the file'))
+        return found or self._odometry.get((dof, frame_id, ''))
 
     def pose_frame(
         self, frame_id: str, ends_at: float, source: StateSource,

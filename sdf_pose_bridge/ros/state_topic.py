@@ -87,7 +87,7 @@ class StateTopic(StateSource):
         dof = None
         if not pose_type.is_sequence:
             dof = effects.models.get(self.model) if self.model else effects.only_model
-            if dof is None:
+            if dof is None and not pose_type.has_child:
                 msg = ('no single model is meant; {model} in its entry of model_pose_topics '
                        'names one')
                 raise ValueError(msg)

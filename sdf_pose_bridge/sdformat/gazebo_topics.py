@@ -50,7 +50,7 @@ SceneBroadcaster Pose_V pose/info /world/{W}/pose/info # not bridged, as poses h
 odometry
 OdometryPublisher Odometry odometry {odom_topic} ~/odometry *odom_frame
 OdometryPublisher OdometryWithCovariance odometry_with_covariance \
-    {odom_covariance_topic} ~/odometry_with_covariance
+    {odom_covariance_topic} ~/odometry_with_covariance *odom_frame
 AckermannSteering,DiffDrive,MecanumDrive,TrackedVehicle Odometry odometry {odom_topic} ~/odometry \
     ?!steering_only *frame_id
 

@@ -13,12 +13,29 @@ from collections import defaultdict
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+import numpy as np
+
 from sdf_pose_bridge.errors import ElementMissingError, SdfWarning
-from sdf_pose_bridge.names import quoted_names, SEPARATOR, unused_name
+from sdf_pose_bridge.geometry.chains import Indices
+from sdf_pose_bridge.names import listed, quoted_names, SEPARATOR, unused_name
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.gazebo_topics import GazeboTopic, GROUPS, is_true, topics_of
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.frame_ids import topic_name_from_frame_id
+from sdf_pose_bridge.tf.parents import tf_parents_from_scene
+
+
+class Owner(NamedTuple):
+    """A plugin or a sensor that has a topic."""
+
+    element: int
+    free_model: int
+    """The model that moves freely in its root, and the element with it; -1 for none."""
+    system: str
+    """The class of the plugin, or the type of the sensor."""
+    topic: GazeboTopic
+    values: Mapping[str, str]
+    """The values of fields, and ``model`` for the scoped name of its model."""
 
 
 class BridgedTopic(NamedTuple):
@@ -27,12 +44,11 @@ class BridgedTopic(NamedTuple):
     gz_name: str
     ros_name: str
     pattern: str
-    """Its name in ROS with ``{model}`` for the model; for joints the top-level model."""
+    """Its name in ROS with ``{model}`` for the free model, or for joints the top-level model."""
     topic: GazeboTopic
-    model: str
-    """The scoped name of its model; empty for a world."""
     places_model: bool
-    """Whether its messages say where the model is."""
+    """Whether its messages say where the free model of its owners is."""
+    owners: Sequence[Owner]
     doubt: SdfWarning | None = None
     """A warning about a topic of several plugins or sensors."""
 
@@ -45,40 +61,59 @@ def bridged_topics(scene: Scene, groups: Collection[str], world: str = '') -> li
     :param world: the world in Gazebo, for a model file.
     :raises ElementMissingError: if a topic begins with the name of the world, and there is none.
     """
-    found = defaultdict[
-        tuple[str, str], dict[int, tuple[GazeboTopic, Mapping[str, str]]]](dict)
-    for element, topic, values in _topics(scene, world):
+    free_models = tf_parents_from_scene(scene).with_free_models(
+        scene, np.zeros(len(scene.names), np.bool_), '').free_models_around()
+    found = defaultdict[tuple[str, str], list[Owner]](list)
+    for owner in _owners(scene, world, free_models):
+        topic, values = owner.topic, owner.values
         if topic.group not in ('clock', *groups):
             pass
         elif name := topic.name(values):
-            found[name, topic.gz_type].setdefault(element, (topic, values))
+            found[name, topic.gz_type].append(owner)
         elif 'W' not in values and '{W}' in topic.names[-1]:
-            kind = Kind(scene.kinds[element]).label
-            msg = (f'the {topic.ros_name} of {kind} "{scene.names[element]}" is on a topic of the '
-                   'world in Gazebo, and a model file has no world; set --world-name to the one '
-                   'in which the model is spawned')
-            raise ElementMissingError(msg, scene.place(element))
+            kind = Kind(scene.kinds[owner.element]).label
+            msg = (f'the {topic.ros_name} of {kind} "{scene.names[owner.element]}" is on a topic '
+                   'of the world in Gazebo, and a model file has no world; set --world-name to '
+                   'the one in which the model is spawned')
+            raise ElementMissingError(msg, scene.place(owner.element))
     bridged, used = [], set[str]()
     for (name, _), owners in found.items():
-        element, (topic, values) = next(iter(owners.items()))
-        prefix, below, model, doubt = '', name[1:], values.get('model', ''), None
-        if len(owners) > 1:
-            owner_names = quoted_names([scene.names[each] for each in owners])
-            doubt = SdfWarning('WARNING', (
-                f'the topic {name} belongs to {owner_names}, so it has messages of all; give each '
-                'a topic of its own in the file'), scene.place(element))
-        elif model:
+        element, free_model, _, topic, values = owners[0]
+        prefix, below, model = '', name[1:], values.get('model', '')
+        if model and all(each.element == element for each in owners):
             prefix = model.partition(SEPARATOR)[0] if topic.group == 'joints' else model
             below = '/'.join(filter(None, (
                 scene.names[element].removeprefix(prefix).removeprefix(SEPARATOR),
                 topic.ros_name.format_map(defaultdict(str, values)))))
             prefix = f'/{_ros_name(prefix)}'
-        ros_name = unused_name(f'{prefix}/{_ros_name(below)}', used)
+        ros_name = pattern = unused_name(f'{prefix}/{_ros_name(below)}', used)
+        around = model.partition(SEPARATOR)[0] if topic.group == 'joints' or free_model < 0 else (
+            scene.names[free_model])
+        if prefix and ros_name.startswith(start := f'/{_ros_name(around)}/'):
+            pattern = f'/{{model}}/{ros_name.removeprefix(start)}'
         bridged.append(BridgedTopic(
-            name, ros_name, ros_name.replace(prefix, '/{model}', 1) if prefix else ros_name, topic,
-            model, bool(topic.odometry_frame) or (
-                topic.group == 'poses' and is_true(values, 'publish_model_pose')), doubt))
+            name, ros_name, pattern, topic, free_model >= 0 and (bool(topic.odometry_frame) or (
+                # A pose of another model is given in the model around it.
+                topic.group == 'poses' and model == scene.names[free_model]
+                and is_true(values, 'publish_model_pose'))),
+            owners, _doubt(name, owners, scene)))
     return bridged
+
+
+def _doubt(name: str, owners: Sequence[Owner], scene: Scene) -> SdfWarning | None:
+    """Return a warning about a topic of several plugins or sensors."""
+    element, *_, topic, _ = owners[0]
+    names = [scene.names[each] for each in dict.fromkeys(each.element for each in owners)]
+    whose, cure = quoted_names(names), ''
+    if len(names) == 1:
+        # Several plugins of a model may follow one command.
+        if len(owners) == 1 or topic.group == 'commands':
+            return None
+        whose = f'{listed([each.system for each in owners])} of {whose}'
+        cure = f', by <{topic.names[0].partition("}")[0].lstrip("{")}>'
+    return SdfWarning('WARNING', (
+        f'the topic {name} belongs to {whose}, so it has messages of all; give each a topic of '
+        f'its own in the file{cure}'), scene.place(element))
 
 
 def node_parameters(
@@ -89,9 +124,10 @@ def node_parameters(
     sources = sorted(
         (each for each in topics if each.places_model),
         key=lambda each: (GROUPS.index(each.topic.group), each.topic.is_of_wheels))
-    followed = {each.model: each for each in reversed(sources)}
+    followed = {each.owners[0].free_model: each for each in reversed(sources)}
     # A pattern must not name the second source of another model.
-    others = {each.pattern for each in sources if each is not followed[each.model]}
+    others = {each.pattern for each in sources
+              if each is not followed[each.owners[0].free_model]}
     poses = {each.ros_name if each.pattern in others else each.pattern
              for each in followed.values()}
     has_poses = any(each.topic.group == 'poses' for each in followed.values())
@@ -108,9 +144,8 @@ def _ros_name(name: str) -> str:
     return topic_name_from_frame_id(name.replace(SEPARATOR, '/'))
 
 
-def _topics(scene: Scene, world: str) -> Iterator[tuple[int, GazeboTopic, Mapping[str, str]]]:
-    """Iterate over elements, their topics, and the values of fields and ``model``."""
-    yield from ((0, clock, {}) for clock in topics_of('server', {}))
+def _owners(scene: Scene, world: str, free_models: Indices) -> Iterator[Owner]:
+    yield from (Owner(0, -1, '', clock, {}) for clock in topics_of('server', {}))
     for element in sorted({*scene.sensors, *scene.plugins}):
         if scene.roots[element] != 0:
             continue
@@ -126,10 +161,12 @@ def _topics(scene: Scene, world: str) -> Iterator[tuple[int, GazeboTopic, Mappin
             owners.append((sensor.type, sensor.topics))
             known.update(S=scene.own_name(element), C=(
                 f'{Kind(scene.kinds[parent]).label}/{scene.own_name(parent)}'))
-        for owner, parameters in owners:
+        for system, parameters in owners:
             values = {'publish_model_pose': dict(parameters).get('publish_nested_model_pose', ''),
                       'joint_index': '0', **dict(reversed(parameters)), **known}
             values['N'] = (values.get('namespace') or values.get('robotNamespace')
                            or values.get('M', ''))
             values = {name: value for name, value in values.items() if value}
-            yield from ((element, each, values) for each in topics_of(owner, values))
+            yield from (
+                Owner(element, free_models.item(element), system, each, values)
+                for each in topics_of(system, values))

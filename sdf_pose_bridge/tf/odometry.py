@@ -9,13 +9,15 @@ world, with offsets. Source: ``UpdateOdometry`` of their classes in gz-sim 8 to 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from sdf_pose_bridge.geometry.poses import Pose, pose_inverse
 from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.gazebo_topics import topics_of
 from sdf_pose_bridge.sdformat.poses import EULER_RPY, pose_from_text, PoseTextError
+from sdf_pose_bridge.tf.gazebo_bridge import bridged_topics
 from sdf_pose_bridge.tf.joint_motion import JointMotion
 
 
@@ -25,36 +27,47 @@ class Odometry(NamedTuple):
     pose: Pose
     """Its pose in the root."""
     model: Pose
-    """The pose of the model in the frame whose pose is sent."""
+    """The pose of the model of the plugin in the frame whose pose is sent."""
     is_of_wheels: bool
+    nested_model: str = ''
+    """The scoped name of this model if it is not the free model, but moves with it."""
 
 
-def odometry_from_scene(scene: Scene, motion: JointMotion) -> dict[tuple[int, str], Odometry]:
+def odometry_from_scene(
+    scene: Scene, motion: JointMotion, problems: Problems,
+) -> dict[tuple[int, str, str], Odometry]:
     """
     Find the frames of the odometry of free models.
 
     :param scene: the scene, loaded with ``plugins=True``.
-    :return: the frames, by the degrees of freedom of their models and the frame ids in messages.
+    :param problems: takes warnings about topics of several plugins.
+    :return: the frames, by the degrees of freedom of free models, the frame ids in messages, and
+        the topics in ROS and in Gazebo; with an empty topic the first one for any other.
     """
-    found: dict[tuple[int, str], Odometry] = {}
-    for dof, model in list(enumerate(motion.elements))[len(motion.dofs):]:
-        # A spawned model is not where its own file puts it.
-        start = scene.pose_of(model) if scene.world_of(model) else Pose()
-        for plugin in scene.plugins.get(model, ()):
-            parameters = dict(reversed(plugin.parameters))
-            for topic in topics_of(plugin.system, parameters):
-                if not topic.odometry_frame:
-                    continue
-                frame_id = parameters.get(topic.odometry_frame, f'{scene.own_name(model)}/odom')
-                found.setdefault(
-                    (dof, frame_id.replace(SEPARATOR, '/')),
-                    Odometry(start, Pose(), is_of_wheels=True) if topic.is_of_wheels else Odometry(
-                        _offset(parameters, 'global_offset'),
-                        pose_inverse(_offset(parameters, 'offset')), is_of_wheels=False))
+    dofs = {element: dof for dof, element in enumerate(motion.elements)}
+    found: dict[tuple[int, str, str], Odometry] = {}
+    for bridged in bridged_topics(scene, ('odometry',)) if scene.plugins else ():
+        if bridged.doubt:
+            problems.warning(bridged.doubt.message, bridged.doubt.place)
+        for element, free_model, _, topic, values in bridged.owners:
+            if free_model not in dofs or not topic.odometry_frame:
+                continue
+            frame_id = values.get(topic.odometry_frame, f'{scene.own_name(element)}/odom')
+            # A spawned model is not where its own file puts it.
+            start = scene.pose_of(element) if scene.world_of(element) else (
+                scene.relative_pose_of(element, scene.top_level_element(element)))
+            odometry = Odometry(start, Pose(), is_of_wheels=True) if topic.is_of_wheels else (
+                Odometry(_offset(values, 'global_offset'),
+                         pose_inverse(_offset(values, 'offset')), is_of_wheels=False))
+            if element != free_model:
+                odometry = odometry._replace(nested_model=scene.names[element])
+            for name in ('', bridged.ros_name, bridged.gz_name):
+                key = dofs[free_model], frame_id.replace(SEPARATOR, '/'), name
+                found.setdefault(key, odometry)
     return found
 
 
-def _offset(parameters: dict[str, str], name: str) -> Pose:
+def _offset(parameters: Mapping[str, str], name: str) -> Pose:
     texts = (parameters.get(f'{each}_{name}', '0 0 0') for each in ('xyz', 'rpy'))
     try:
         return Pose(*pose_from_text(' '.join(texts), EULER_RPY))

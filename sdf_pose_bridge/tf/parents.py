@@ -71,6 +71,13 @@ class TfParents(NamedTuple):
         parents[list(free_models)] = 0
         return self._replace(parents=parents, free_models=free_models)
 
+    def free_models_around(self) -> Indices:
+        """Return the free model with which each element moves; -1 for none, shape (n,)."""
+        models = np.full(len(self.parents), -1, np.int32)
+        models[list(self.free_models)] = list(self.free_models.values())
+        found: Indices = models[ends_from_pointers(np.where(models >= 0, -1, self.parents))]
+        return found
+
 
 def tf_parents_from_scene(scene: Scene) -> TfParents:
     """

@@ -108,7 +108,7 @@ class TfTree(ReadOnly):
     has one; or :data:`ROOT_IS_PARENT`, or :data:`NO_PARENT`."""
     moving: MovingFrames | None
     """The frames that joints and free models move; None if they follow no messages."""
-    odometry: Mapping[tuple[int, str], Odometry]
+    odometry: Mapping[tuple[int, str, str], Odometry]
     """The frames of odometry, as :func:`odometry_from_scene` finds them."""
     world: str
     """The name of the world that the frames belong to; empty for a model file."""
@@ -215,7 +215,7 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
             Frame(each, others[each], ROOT_IS_PARENT, Pose())
             for each in sorted(others.keys() - {'', *ids})])
         moving = MovingFrames(motion, frames.poses, frames.parents, frames.owners, reference)
-        odometry = odometry_from_scene(scene, motion)
+        odometry = odometry_from_scene(scene, motion, problems)
     return TfTree(
         root_frame=options.root_frame,
         frame_ids=tuple(frames.ids),

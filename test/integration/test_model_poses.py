@@ -122,6 +122,25 @@ def test_the_odometry_of_wheels_begins_where_the_file_puts_the_model(follow, fil
     bridge.wait_for_line('model_pose_frames has no effect on "cart/odom"')
 
 
+def test_two_odometries_in_one_frame_and_a_plugin_in_a_nested_model(follow, file, tracker):
+    diff_drive = 'plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive"'
+    replace(file, f"""<sdf version="1.11"><world name="shop">
+<model name="cart"><pose>3 2 0.1 0 0 0</pose><link name="deck"/>
+<{diff_drive}><odom_topic>wheels</odom_topic></plugin>
+<plugin filename="gz-sim-odometry-publisher-system" name="gz::sim::systems::OdometryPublisher"/>
+</model><model name="trolley"><model name="bot"><pose>0 1 0 0 0 0</pose><link name="base"/>
+<{diff_drive}/></model></model></world></sdf>""")
+    follow('/{model}/odometry_1', '/{model}/odometry', '/{model}/bot/odometry')
+    for topic, seen_x, y in (('/cart/odometry_1', 5.0, 0.0), ('/cart/odometry', 8.0, 2.0)):
+        assert tracker.move(
+            5.0, 'cart/deck', Odometry, topic, seen_x=seen_x, frame_id='cart/odom',
+            child='cart/base_footprint').transform.translation.y == y
+    found = tracker.move(
+        5.0, 'trolley/bot/base', Odometry, '/trolley/bot/odometry', frame_id='bot/odom',
+        child='bot/base')
+    assert found.transform.translation.y == pytest.approx(1.0)
+
+
 def test_a_tracker_with_another_axis_up_gives_poses_of_its_markers(follow, file, tracker):
     replace(file, CART_WITH_WHEELS)
     follow(model_pose_placement='markers')

@@ -11,13 +11,11 @@ import pytest
 from rclpy.serialization import serialize_message
 
 from sdf_pose_bridge.errors import JointPositionError
-from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
 from sdf_pose_bridge.ros.cdr import LONGEST_READ_S, StampedPose
 from sdf_pose_bridge.ros.model_poses import messages_from_poses
 from sdf_pose_bridge.ros.state_messages import MOST_BYTES
 from sdf_pose_bridge.ros.state_topic import StateTopic, TopicKey
-from sdf_pose_bridge.tf.odometry import Odometry
 
 QUARTER = (*POSE[:3], *quaternion_from_rpy((0.0, 0.0, math.pi / 2.0)))
 """That pose after a quarter turn about z."""
@@ -109,10 +107,38 @@ def test_the_odometry_of_wheels_counts_from_the_file_whatever_the_parameters_say
     assert log.count('which counts as the root frame by model_pose_frames') == 1
 
 
-def test_odometry_with_an_offset_is_taken_back_in_the_turned_model(models):
-    models.effects.odometry = {(models.effects.models['a'], 'o'): Odometry(
-        Pose(), Pose(0.0, 1.0, 0.0), is_of_wheels=False)}
-    assert models.moved(frame_id='o', pose=QUARTER)[1:] == pytest.approx((0.0, 2.0))
+@pytest.mark.parametrize(('topic', 'moved'), [
+    # The offset is taken back in the turned model.
+    ('/a/odometry_1', ('a', 0.0, 2.0)),
+    ('/model/a/odometry', ('a', 0.0, 2.0)),
+    ('/a/odometry', ('a', 1.0, 2.0)),
+    ('/wheels', ('a', 1.0, 2.0)),
+])
+@pytest.mark.parametrize('model', [None, 'a'])
+def test_the_topic_decides_between_odometries_in_one_frame(models, capfd, topic, moved, model):
+    models.source.name = topic
+    assert models.moved(
+        child='p/a/k', frame_id='o', pose=QUARTER, model=model) == pytest.approx(moved)
+    assert 'o"' not in capfd.readouterr().err
+
+
+def test_another_topic_in_the_frame_of_two_odometries_counts_as_the_first_and_is_told(
+        models, capfd):
+    assert models.moved(frame_id='o', pose=QUARTER)[1:] == pytest.approx((1.0, 2.0))
+    models.read(frame_id='o')
+    line = ('/poses has poses in "o", the frame of the odometry of several plugins, and is none '
+            'of their topics "/a/odometry", "/a/odometry_1"; its poses count as on the first')
+    assert capfd.readouterr().err.count(line) == 1
+
+
+@pytest.mark.parametrize('source', ['/a/c/odometry', '/poses'])
+def test_the_odometry_of_a_model_in_another_one_moves_both(models, source):
+    models.source.name = source
+    models.positions.update(models.positions.selection(['j']), np.array([0.25]), 5)
+    # The model c starts at x = 4, and is 4.25 m before a now.
+    model = 'a' if source == '/poses' else None
+    assert models.moved(child='x', frame_id='of_c', model=model) == (
+        'a', pytest.approx(0.75), pytest.approx(2.0))
 
 
 def test_a_pose_on_a_topic_for_no_single_model_is_ignored(models, capfd):

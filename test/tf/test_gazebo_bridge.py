@@ -3,7 +3,7 @@
 """Topics of a file in Gazebo and in ROS, and the parameters of the node for them."""
 
 import pytest
-from sdf_texts import model_file, world_file
+from sdf_texts import joint, model_file, world_file
 
 from sdf_pose_bridge import load_text, SdfError
 from sdf_pose_bridge.sdformat.gazebo_topics import GROUPS, ROS_TYPES
@@ -131,6 +131,47 @@ def test_the_node_follows_the_best_source_of_each_model(contents, poses):
             for each in words.split() if not each.islower())
     text = world_file(''.join(model(each[0], plugins(*each)) for each in contents.items()))
     assert parameters_of(text)[1:] == [poses, []]
+
+
+def test_the_node_follows_a_plugin_in_a_nested_model_for_the_free_one_around_it():
+    pose = plugin('PosePublisher', '<publish_model_pose>true</publish_model_pose>')
+    bot = model('bot', plugin('DiffDrive') + pose)
+    joined = joint('<parent>l</parent><child>bot::l</child>', joint_type='fixed')
+    wrappers = ''.join(model(name, bot + joined) for name in 'ab')
+    assert parameters_of(world_file(f'<model name="c">{bot}</model>{wrappers}')) == [
+        [], ['/{model}/bot/odometry'], []]
+    # Without a joint, it moves by itself in the model around it.
+    assert parameters_of(world_file(model('a', bot)))[1] == ['/{model}/pose']
+
+
+def test_of_plugins_in_two_models_of_one_body_the_true_one_is_followed():
+    inner = model('one', plugin('DiffDrive')) + model('two', plugin('OdometryPublisher')) + joint(
+        '<parent>one::l</parent><child>two::l</child>', joint_type='fixed')
+    assert parameters_of(world_file(f'<model name="a">{inner}</model>'))[1] == [
+        '/{model}/two/odometry']
+
+
+def test_nobody_follows_the_odometry_of_what_cannot_move():
+    static = f'<model name="a"><static>true</static><link name="l"/>{plugin("DiffDrive")}</model>'
+    assert parameters_of(world_file(static))[1] == []
+
+
+@pytest.mark.parametrize(('content', 'doubts'), [
+    (plugin('OdometryPublisher') + plugin('DiffDrive'), [
+        ('/model/a/odometry belongs to OdometryPublisher, DiffDrive', 'by <odom_topic>')]),
+    (JOINTS * 2, [
+        ('/world/w/model/a/joint_state belongs to JointStatePublisher, JointStatePublisher',
+         'by <topic>')]),
+    # All of them follow one command.
+    (plugin('VelocityControl') + plugin('DiffDrive'), []),
+])
+def test_plugins_of_one_model_on_one_topic_are_told(content, doubts):
+    topics, _ = topics_in(world_file(model('a', content)))
+    assert [each.doubt.message for each in topics if each.doubt] == [
+        f'the topic {whose} of "a", so it has messages of all; give each a topic of its own in '
+        f'the file, {cure}' for whose, cure in doubts]
+    assert {each.gz_name: each.ros_name for each in topics}.get(
+        '/model/a/odometry', '/a/odometry') == '/a/odometry'
 
 
 def test_a_spawned_model():
