@@ -21,17 +21,19 @@ def plugin(system, parameters=''):
     return f'<plugin filename="f" name="gz::sim::systems::{system}">{parameters}</plugin>'
 
 
+SHARED = plugin('MecanumDrive', '<odom_topic>shared</odom_topic><frame_id>s</frame_id>')
 TEXT = world_file(
     '<model name="a"><link name="l"/><link name="k"/>' + joint(
         '<parent>l</parent><child>k</child><axis><xyz>1 0 0</xyz></axis>', 'j', 'prismatic')
     + plugin('DiffDrive', '<odom_topic>wheels</odom_topic><frame_id>o</frame_id>')
     + plugin('OdometryPublisher', '<odom_frame>o</odom_frame><xyz_offset>0 -1 0</xyz_offset>')
+    + SHARED
     # It moves with the link k of the model a.
     + '<model name="c"><pose>4 0 0 0 0 0</pose><link name="l"/>'
     + plugin('DiffDrive', '<frame_id>of_c</frame_id>') + '</model>'
     + joint('<parent>k</parent><child>c::l</child>', 'w', 'fixed')
     + '<model name="b"><pose>0 3 0 0 0 0</pose><link name="l"/>'
-    + plugin('DiffDrive') + '</model></model>'
+    + plugin('DiffDrive') + SHARED + '</model></model>'
     '<model name="fixed"><static>true</static><pose>0 2 0 0 0 0</pose><link name="l"/></model>')
 POSE = (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)
 

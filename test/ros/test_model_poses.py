@@ -131,6 +131,13 @@ def test_another_topic_in_the_frame_of_two_odometries_counts_as_the_first_and_is
     assert capfd.readouterr().err.count(line) == 1
 
 
+def test_on_a_topic_and_in_a_frame_of_two_models_the_child_frame_id_decides(models, capfd):
+    models.source.name = '/shared'
+    assert models.moved(child='a::b', frame_id='s')[0] == 'a/b'
+    assert not models.read(child='x', frame_id='s')
+    assert 'poses of "x", which are ignored: no model has this name' in capfd.readouterr().err
+
+
 @pytest.mark.parametrize('source', ['/a/c/odometry', '/poses'])
 def test_the_odometry_of_a_model_in_another_one_moves_both(models, source):
     models.source.name = source

@@ -137,9 +137,8 @@ def test_the_node_follows_a_plugin_in_a_nested_model_for_the_free_one_around_it(
     pose = plugin('PosePublisher', '<publish_model_pose>true</publish_model_pose>')
     bot = model('bot', plugin('DiffDrive') + pose)
     joined = joint('<parent>l</parent><child>bot::l</child>', joint_type='fixed')
-    wrappers = ''.join(model(name, bot + joined) for name in 'ab')
-    assert parameters_of(world_file(f'<model name="c">{bot}</model>{wrappers}')) == [
-        [], ['/{model}/bot/odometry'], []]
+    for text in f'<model name="c">{bot}</model>', model('a', bot + joined):
+        assert parameters_of(world_file(text)) == [[], ['/{model}/bot/odometry'], []]
     # Without a joint, it moves by itself in the model around it.
     assert parameters_of(world_file(model('a', bot)))[1] == ['/{model}/pose']
 
