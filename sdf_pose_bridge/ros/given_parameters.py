@@ -33,7 +33,7 @@ from rclpy.task import Future
 from sdf_pose_bridge.names import hint_from_names, printable, shortened
 from sdf_pose_bridge.ros.background import wake
 from sdf_pose_bridge.ros.parameters import DECLARATIONS, Settings, SettingsError, Value
-from sdf_pose_bridge.ros.setting_rules import MOST_VALUES
+from sdf_pose_bridge.ros.setting_rules import check_size, MOST_CHARACTERS, MOST_VALUES
 
 MOST_REASONS = 20
 """Number of results of a rejected call that contain the reason."""
@@ -294,7 +294,7 @@ def _parameters_at_start(
 def _declare(node: Node, parameter: Parameter) -> None:
     declaration = DECLARATIONS[parameter.name]
     descriptor = ParameterDescriptor(
-        description=declaration.description, additional_constraints=declaration.constraint,
+        description=declaration.description, additional_constraints=declaration.rule,
         read_only=declaration.is_read_only)
     if declaration.maximum is not None:
         descriptor.floating_point_range = [
@@ -310,6 +310,7 @@ def _declare(node: Node, parameter: Parameter) -> None:
 
 def _converted(given: Parameter, *, shows_command_line: bool) -> Any:
     declaration = DECLARATIONS[given.name]
+    check_size(given.value, declaration.most_characters or MOST_CHARACTERS)
     if given.type_ is declaration.type_:
         return declaration.convert(given.value)
     if given.type_ is Parameter.Type.NOT_SET:
@@ -357,7 +358,7 @@ def _parameters_from_messages(
     :return: the parameters, without read-only ones that keep their values, such as in a dump that
         "ros2 param load" sets.
     :raises ValueError: if there is no such parameter, or no such type, or if there are too many
-        parameters or values.
+        parameters.
     """
     if len(messages) > MOST_VALUES:
         msg = f'a call can set at most {MOST_VALUES} parameters, and this one has {len(messages)}'
@@ -369,10 +370,6 @@ def _parameters_from_messages(
                    f'{hint_from_names(message.name, DECLARATIONS)}')
             raise ValueError(msg)
         parameter = Parameter.from_parameter_msg(message)
-        if parameter.type_.name.endswith('ARRAY') and len(parameter.value) > MOST_VALUES:
-            msg = (f'parameter {message.name} is a list of {len(parameter.value)} values; a list '
-                   f'can have at most {MOST_VALUES}')
-            raise ValueError(msg)
         if message.name in DECLARATIONS:
             parameter = parameter_with_type(parameter, DECLARATIONS[message.name].type_)
         if not (node.describe_parameter(message.name).read_only

@@ -59,7 +59,14 @@ class Declaration(Generic[Setting]):
     """The largest value of a number; the smallest one is 0.0."""
     is_read_only: bool = False
     """Whether the parameter can be set only at the start."""
+    most_characters: int = 0
+    """Largest length of a text, or of each text of a list."""
     name: str = field(init=False)
+
+    def __post_init__(self) -> None:
+        if isinstance(self.default, str | list) != bool(self.most_characters):
+            msg = 'a parameter of texts, and no other one, needs most_characters'
+            raise TypeError(msg)
 
     @property
     def type_(self) -> Parameter.Type:
@@ -67,6 +74,14 @@ class Declaration(Generic[Setting]):
         # rclpy takes an empty list for one of bytes.
         return (Parameter.Type.STRING_ARRAY if self.default == []
                 else Parameter.Type.from_parameter_value(self.default))
+
+    @property
+    def rule(self) -> str:
+        """The constraint with the limits of texts."""
+        if not self.most_characters or self.constraint.startswith('one of'):
+            return self.constraint
+        each = f'{rules.MOST_VALUES} values of at most ' if isinstance(self.default, list) else ''
+        return f'{self.constraint}; at most {each}{self.most_characters} characters'
 
     def __set_name__(self, owner: type, name: str) -> None:
         self.name = name
@@ -90,7 +105,8 @@ def _choice(default: Choice, description: str) -> Declaration[Choice]:
             raise rules.refusal(value, rule)
         return type(default)(value)
 
-    return Declaration(default.value, description, rule, setting)
+    return Declaration(
+        default.value, description, rule, setting, most_characters=rules.MOST_CHARACTERS)
 
 
 def _rate(
@@ -123,14 +139,14 @@ class Settings:
         'The file to publish, of SDFormat or URDF.',
         'the path of a file or of a model directory, or a file://, package:// or model:// URI, '
         'such as package://name/worlds/cell.sdf; either this or robot_description is required',
-        rules.path_setting,
+        str, most_characters=rules.MOST_CHARACTERS_OF_PATH,
     )
     robot_description = Declaration(
         '',
         'The text to publish, of SDFormat or URDF, instead of sdf_file. Relative includes '
         'are searched in resource_paths.',
         'the text of a file; either this or sdf_file is required',
-        str,
+        str, most_characters=rules.MOST_CHARACTERS_OF_FILE,
     )
     publish_robot_description = _switch(
         True,
@@ -154,30 +170,30 @@ class Settings:
     root_frame = Declaration(
         'world',
         'The TF frame of the SDF world, or of the implicit root of a model file.',
-        'not empty, no leading slash, at most 255 characters',
-        rules.root_frame_setting,
+        'not empty, no leading slash',
+        rules.root_frame_setting, most_characters=rules.MOST_CHARACTERS,
     )
     anchor_models = Declaration(
         AnchorModels.AUTO.value,
         'The top-level models that get a transform from root_frame; odometry or localization can '
         'publish the others. "auto" is "static" for a model file or URDF, and "all" for '
         'a world.',
-        'one of auto, all, static, none, or glob patterns of the names of models, separated by '
+        'auto, all, static, none, or glob patterns of the names of models, separated by '
         'commas, such as table*,fence; static may be one of them',
-        rules.anchors_setting,
+        rules.anchors_setting, most_characters=rules.MOST_CHARACTERS_OF_PATH,
     )
     model = Declaration(
         '',
         'Publishes only this model of a world; everything if empty.',
         'the name of a model as in SDF: robot, or robot::arm for a nested one',
-        str,
+        str, most_characters=rules.MOST_CHARACTERS_OF_PATH,
     )
     model_name = Declaration(
         '',
         'The name under which the model of a model file or URDF was spawned; it replaces the name '
         'in the file, and with frame_names "auto" precedes frame ids as in messages of Gazebo.',
         'the name of a model; that of the file if empty',
-        rules.model_name_setting,
+        rules.model_name_setting, most_characters=rules.MOST_CHARACTERS,
     )
     frame_names = _choice(
         FrameNames.AUTO,
@@ -189,36 +205,35 @@ class Settings:
         '/',
         'Replaces "::" in frame ids. ros_gz_bridge uses "/". To keep "::", quote it twice on the '
         'command line: -p "frame_separator:=\'::\'".',
-        'not empty, at most 8 characters',
-        rules.separator_setting,
+        'not empty',
+        rules.separator_setting, most_characters=rules.MOST_CHARACTERS_OF_SEPARATOR,
     )
     frame_prefix = Declaration(
         '',
         'Precedes every frame id except root_frame, without a separator; also the link "world" of '
         'a URDF.',
-        'at most 255 characters; a leading slash is left out, as by tf2',
-        rules.prefix_setting,
+        'a leading slash is left out, as by tf2',
+        rules.prefix_setting, most_characters=rules.MOST_CHARACTERS,
     )
     kinds = Declaration(
         [name for name, kind in rules.PUBLISHED_KINDS.items() if kind in DEFAULT_KINDS],
         'The kinds of elements that become frames; "auto" is link for URDF, and model, link, '
         'frame and sensor for SDFormat.',
         f'{rules.AUTO_KINDS}, or some of {", ".join(rules.PUBLISHED_KINDS)}',
-        rules.kinds_setting,
+        rules.kinds_setting, most_characters=rules.MOST_CHARACTERS,
     )
     pose_frame = Declaration(
         '',
         'The frame in which the poses on ~/poses/... are given.',
         'the frame id of a published frame, or of root_frame; root_frame if empty',
-        str,
+        str, most_characters=rules.MOST_CHARACTERS_OF_PATH,
     )
     pose_topics = Declaration(
         ['*'],
         'The frames that get a topic ~/poses/<frame> with their pose in pose_frame.',
         'glob patterns for frame ids, such as robot/* (which matches robot/arm/tool too); '
-        'none if empty; at most 1000 patterns of at most 255 characters; * alone means none if '
-        'there are more than 1000 frames, ?* means all',
-        rules.patterns_setting,
+        'none if empty; * alone means none if there are more than 1000 frames, ?* means all',
+        tuple, most_characters=rules.MOST_CHARACTERS,
     )
     optical_frames = _switch(
         True,
@@ -236,9 +251,8 @@ class Settings:
         'of a world that has moving joints, and messages on its topic name joints of this model '
         'alone; {world} stands for the world.',
         'names of topics, such as joint_states or /world/{world}/model/{model}/joint_state; those '
-        'with {model} or {world} count only for a world; at most 1000 of them, of at most 255 '
-        'characters',
-        rules.topic_patterns_setting,
+        'with {model} or {world} count only for a world',
+        rules.topic_patterns_setting, most_characters=rules.MOST_CHARACTERS,
     )
     model_pose_topics = Declaration(
         [],
@@ -247,18 +261,17 @@ class Settings:
         'model; TFMessage names models in its child frame ids. A pose is that of the model frame, '
         'or of the frame in the model that the child frame id names. {world} stands for the '
         'world.',
-        'names of topics, such as /vrpn_mocap/{model}/pose; at most 1000 of them, of at most 255 '
-        'characters',
-        rules.optional_topic_patterns_setting,
+        'names of topics, such as /vrpn_mocap/{model}/pose',
+        rules.optional_topic_patterns_setting, most_characters=rules.MOST_CHARACTERS,
     )
     model_pose_frames = Declaration(
         [],
         'Frames in the headers of these messages that are the same as root_frame. Those of the '
         'odometry that plugins of Gazebo in the file send are known without it.',
-        'glob patterns for frame ids, such as */odom; at most 1000 patterns of at most 255 '
-        'characters',
+        'glob patterns for frame ids, such as */odom',
         # Compiled here, as look-ups wait for the thread that uses them.
-        lambda values: [re.compile(translate(each)) for each in rules.patterns_setting(values)],
+        lambda values: [re.compile(translate(each)) for each in values],
+        most_characters=rules.MOST_CHARACTERS,
     )
     model_pose_placement = Declaration(
         '',
@@ -266,18 +279,19 @@ class Settings:
         'tracker.',
         'the name of a frame in the model, such as markers or arm::tool; the model frame if '
         'empty, and for models without this frame',
-        str,
+        str, most_characters=rules.MOST_CHARACTERS_OF_PATH,
     )
     simulator = Declaration(
         '',
         'The node of a simulator that is asked for the poses of models, by its service '
         'get_entities_states of the package simulation_interfaces.',
         'the name of a node, such as /gzserver, or of its service, or /; none if empty',
-        rules.simulator_setting,
+        rules.simulator_setting, most_characters=rules.MOST_CHARACTERS,
     )
     simulator_entity = Declaration(
         rules.MODEL_FIELD, 'The name in the simulator of the model that is {model} in the file.',
-        'the name of an entity, such as /World/{model}', rules.entity_setting,
+        'the name of an entity, such as /World/{model}, with {model} at most once',
+        rules.entity_setting, most_characters=rules.MOST_CHARACTERS,
     )
     simulator_others = _switch(
         False, 'Publishes frames of entities of the simulator that the file does not have.',
@@ -295,8 +309,8 @@ class Settings:
         [],
         'Directories searched for model:// and relative URIs, before '
         'GZ_SIM_RESOURCE_PATH and SDF_PATH.',
-        'paths of directories, at most 1000; empty ones are ignored',
-        rules.directories_setting,
+        'paths of directories; empty ones are ignored',
+        rules.directories_setting, most_characters=rules.MOST_CHARACTERS_OF_PATH,
     )
     publish_frequency = _rate(
         'Highest rate in Hz at which a transform that joints move is published on /tf; 0.0 for '

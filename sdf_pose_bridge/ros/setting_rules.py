@@ -9,10 +9,12 @@ raises ValueError with the end of a sentence that begins with "parameter <name>"
 
 from __future__ import annotations
 
+import array
 from collections.abc import Sequence
 from pathlib import Path
 
 from rclpy.exceptions import InvalidTopicNameException
+from rclpy.validate_full_topic_name import validate_full_topic_name
 from rclpy.validate_topic_name import validate_topic_name
 
 from sdf_pose_bridge.names import hint_from_names, printable, SEPARATOR, shortened
@@ -49,7 +51,10 @@ MOST_CHARACTERS = 255
 """Largest length of a name or a pattern; a prefix is part of every frame id."""
 
 MOST_CHARACTERS_OF_PATH = 4096
-"""Largest length of a path, as in Linux."""
+"""Largest length of a path, as in Linux, and of a name with scopes."""
+
+MOST_CHARACTERS_OF_FILE = 10_000_000
+"""Largest length of the text of a file; larger files have a path."""
 
 MOST_CHARACTERS_OF_SEPARATOR = 8
 """Largest length of a separator, which a frame id contains many times."""
@@ -59,19 +64,19 @@ def root_frame_setting(value: str) -> str:
     """Reject texts that are no frame id of the root."""
     if not value or value.startswith('/'):
         raise refusal(value, 'a frame id, not empty and without a leading slash')
-    return _name_setting(value, MOST_CHARACTERS)
+    return _name_setting(value)
 
 
 def prefix_setting(value: str) -> str:
     """Return the beginning of frame ids without its leading slash, as tf2 drops it."""
-    return _name_setting(value.removeprefix('/'), MOST_CHARACTERS)
+    return _name_setting(value.removeprefix('/'))
 
 
 def separator_setting(value: str) -> str:
     """Reject invalid separators of the parts of frame ids."""
     if not value:
         raise refusal(value, 'at least one character, or names run together')
-    return _name_setting(value, MOST_CHARACTERS_OF_SEPARATOR)
+    return _name_setting(value)
 
 
 def kinds_setting(values: Sequence[str]) -> frozenset[Kind] | None:
@@ -87,14 +92,6 @@ def kinds_setting(values: Sequence[str]) -> frozenset[Kind] | None:
     return frozenset(PUBLISHED_KINDS[value] for value in values)
 
 
-def patterns_setting(values: Sequence[str]) -> tuple[str, ...]:
-    """Reject too many patterns, and long ones."""
-    _check_count(values, 'patterns')
-    for value in values:
-        _check_length(value, MOST_CHARACTERS)
-    return tuple(values)
-
-
 def topic_patterns_setting(values: Sequence[str]) -> tuple[str, ...]:
     """Reject texts that do not become names of topics, and none."""
     if not values:
@@ -104,7 +101,7 @@ def topic_patterns_setting(values: Sequence[str]) -> tuple[str, ...]:
 
 def optional_topic_patterns_setting(values: Sequence[str]) -> tuple[str, ...]:
     """Reject texts that do not become names of topics."""
-    for value in patterns_setting(values):
+    for value in values:
         name = value.replace(MODEL_FIELD, 'model').replace(WORLD_FIELD, 'world')
         if '{' in name or '}' in name:
             raise refusal(
@@ -116,7 +113,6 @@ def optional_topic_patterns_setting(values: Sequence[str]) -> tuple[str, ...]:
 
 def simulator_setting(value: str) -> str:
     """Return the name of the service by its name, or by that of its node; reject other texts."""
-    _check_length(value, MOST_CHARACTERS)
     if not value:
         return ''
     name = value if value.endswith(f'/{STATES_SERVICE}') else (
@@ -127,21 +123,23 @@ def simulator_setting(value: str) -> str:
 
 def entity_setting(value: str) -> str:
     """Reject texts that are no name of an entity."""
-    if not value:
-        raise refusal(value, f'the name of an entity, such as /World/{MODEL_FIELD}')
-    return _name_setting(value, MOST_CHARACTERS)
+    if not value or value.count(MODEL_FIELD) > 1:
+        raise refusal(value, f'the name of an entity, with {MODEL_FIELD} at most once')
+    return _name_setting(value)
 
 
 def model_name_setting(value: str) -> str:
     """Reject texts that are no name of a single model."""
     if SEPARATOR in value or value.startswith('/'):
         raise refusal(value, f'the name of one model, without "{SEPARATOR}" and a leading slash')
-    return _name_setting(value, MOST_CHARACTERS)
+    return _name_setting(value)
 
 
 def _check_ros_name(value: str, name: str, what: str) -> None:
     try:
         validate_topic_name(name)
+        # It finds less, such as no repeated slashes.
+        validate_full_topic_name(f'/{name.removeprefix("~").removeprefix("/")}')
     except InvalidTopicNameException as error:
         # The other lines show the name and the place.
         reason = str(error).partition('\n')[0].partition(': ')[2].rstrip(':')
@@ -150,43 +148,34 @@ def _check_ros_name(value: str, name: str, what: str) -> None:
 
 def anchors_setting(value: str) -> AnchorModels | AnchorPatterns:
     """Reject texts that are neither a word nor patterns."""
-    _check_count(value.split(','), 'patterns')
-    _check_length(value, MOST_CHARACTERS_OF_PATH)
+    check_size(value.split(','), MOST_CHARACTERS_OF_PATH)
     try:
         return anchors_from_text(value)
     except ValueError as error:
         raise refusal(value, str(error)) from None
 
 
-def path_setting(value: str) -> str:
-    """Reject texts that are too long for a path."""
-    _check_length(value, MOST_CHARACTERS_OF_PATH)
-    return value
-
-
 def directories_setting(values: Sequence[str]) -> tuple[Path, ...]:
-    """Return the paths without empty ones; reject too many, and long ones."""
-    _check_count(values, 'directories')
+    """Return the paths without empty ones."""
     try:
-        return tuple(Path(path_setting(value)).expanduser() for value in values if value)
+        return tuple(Path(value).expanduser() for value in values if value)
     except RuntimeError:
         raise refusal(values, 'paths; "~name" needs a user of this name') from None
 
 
-def _check_count(values: Sequence[str], what: str) -> None:
+def check_size(value: object, most_characters: int) -> None:
+    """Reject a text or a list with a text that is too long, and a list that is too long."""
+    values = value if isinstance(value, list | array.array) else [value]
     if len(values) > MOST_VALUES:
-        msg = f'has {len(values)} {what}; it must have at most {MOST_VALUES}'
+        msg = f'has {len(values)} values; it must have at most {MOST_VALUES}'
+        raise ValueError(msg)
+    longest = max((len(each) for each in values if isinstance(each, str)), default=0)
+    if longest > most_characters:
+        msg = f'has a value of {longest} characters; it must have at most {most_characters}'
         raise ValueError(msg)
 
 
-def _check_length(value: str, most: int) -> None:
-    if len(value) > most:
-        msg = f'has a value of {len(value)} characters; it must have at most {most}'
-        raise ValueError(msg)
-
-
-def _name_setting(value: str, most: int) -> str:
-    _check_length(value, most)
+def _name_setting(value: str) -> str:
     if not value.isprintable():
         raise refusal(value, 'without control characters')
     return value

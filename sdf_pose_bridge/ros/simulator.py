@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Sequence
 import importlib
+import math
 import re
 import time
 from typing import Any
@@ -33,7 +34,13 @@ LONGEST_CALL_S = 5.0
 """Longest time to wait for an answer."""
 
 UNFILTERED_PERIOD_S = 60.0
-"""Period of calls if the simulator answers with more entities than it is asked for."""
+"""Time before the next call if the simulator answers with more entities than it is asked for."""
+
+MOST_EXCESSES = 2
+"""Number of such answers after which it is not called again: each may block the executor."""
+
+MOST_CHARACTERS_OF_FILTER = 1_000_000
+"""Largest length of a filter; for more names all entities are asked for."""
 
 LARGEST_SHARE = 0.1
 """Largest share of a core for answers. If they take longer, there are fewer calls."""
@@ -78,6 +85,7 @@ class Simulator(StateSource):
         self._costs_s: deque[float] = deque(maxlen=_COSTS)
         # The models that the last answer lacks, the last two answers lack, and that are logged.
         self._missing = self._to_tell = self._told = list[str]()
+        self._excesses, self._followed_others = 0, list[str]()
         self._kept: set[str] = set()
         self._client: Any = None
         try:
@@ -100,7 +108,10 @@ class Simulator(StateSource):
         """Ask for the poses of the free models, and of other entities if they are wanted."""
         if self._client is None:
             return
-        self._positions, self._settings, self._due = positions, settings, 0.0
+        self._positions, self._settings = positions, settings
+        before, self._followed_others = self._followed_others, [*positions.others]
+        if self._followed_others == before:  # else nobody but the simulator is the reason
+            self._excesses, self._due = 0, 0.0
         self._models, self._known = (
             {settings.simulator_entity.replace(MODEL_FIELD, name): model
              for model in reversed(models) for name in (model.replace(SEPARATOR, '/'), model)}
@@ -108,7 +119,9 @@ class Simulator(StateSource):
         # All models of the world may be thousands. Names are compared as a whole.
         names = '|'.join(
             re.sub(r'([][\\^$.|?*+(){}])', r'\\\1', each) for each in reversed(self._models))
-        self._request.filters.filter = '' if settings.simulator_others else f'^({names})$'
+        self._request.filters.filter = (
+            '' if settings.simulator_others or len(names) > MOST_CHARACTERS_OF_FILTER
+            else f'^({names})$')
         self._timer.cancel()
         if settings.simulator_rate:
             self._timer.timer_period_ns = round(NANOSECONDS / settings.simulator_rate)
@@ -168,13 +181,21 @@ class Simulator(StateSource):
                 f'{count_in_words(states, "state")}')
         else:
             is_too_much = names > (
-                len(self._known) + MOST_OTHERS if self._settings.simulator_others
-                else len(self._models))
-            self._report(
-                f'it has {names} entities, which are more than were asked for, so that the next '
-                f'call is in {UNFILTERED_PERIOD_S:g} s' if is_too_much else '',
-                'entities', 'few poses')
-            self._due = begin + (UNFILTERED_PERIOD_S if is_too_much else self._period_s(names))
+                len(self._models) if self._request.filters.filter
+                else len(self._known) + MOST_OTHERS)
+            self._excesses += is_too_much
+            if not is_too_much:
+                period_s, when = self._period_s(names), ''
+            elif self._excesses < MOST_EXCESSES:
+                period_s = UNFILTERED_PERIOD_S
+                when = f'the next call is in {UNFILTERED_PERIOD_S:g} s'
+            else:
+                period_s = math.inf
+                when = 'it is not called again until a parameter is set or the file is read again'
+            self._report(when and (
+                f'it has {names} entities, which are more than were asked for, so that {when}'),
+                when, 'few poses')
+            self._due = begin + period_s
             self._answers.append(answer)
             self._wake()
 

@@ -4,7 +4,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+import contextlib
 import functools
 
 from rclpy.clock import Clock, ClockType
@@ -108,17 +109,24 @@ class StateSources:
             current.end()
             self.simulator = current = None
         if wanted and current is None:
-            self.simulator = current = Simulator(self._node, wanted, self._wake)
+            with self._failure_told(wanted):
+                self.simulator = current = Simulator(self._node, wanted, self._wake)
         if current is not None:
             current.follow(positions, settings)
 
     def _open(self, key: TopicKey) -> None:
-        try:
+        with self._failure_told(key.name):
             self._topics[key] = StateTopic(self._node, key)
+
+    @contextlib.contextmanager
+    def _failure_told(self, name: str) -> Iterator[None]:
+        try:
+            yield
         except (RuntimeError, ValueError) as error:
-            # Security may forbid it. The rest of the message names lines of the source of ROS.
+            # Security may forbid it, or the name is too long with that of the namespace. The rest
+            # of the message names lines of the source of ROS.
             reason = line_from_text(str(error).partition(', at /')[0])
-            self._logger.warning(f'no subscription to {key.name}: {reason}')
+            self._logger.warning(f'no messages from {name}: {reason}')
 
     def _find_publishers(self) -> None:
         """Subscribe to topics of poses with the types with which they are published."""

@@ -141,6 +141,7 @@ def topics_from_patterns(
     """
     # By the full name of each topic: its models, and the name for each of them.
     places: dict[str, dict[str, str]] = {}
+    topics, too_long, warnings = {}, list[str](), []
     for pattern in dict.fromkeys(patterns):
         if WORLD_FIELD in pattern and not world:
             continue
@@ -148,8 +149,10 @@ def topics_from_patterns(
             frame_id = model.replace(SEPARATOR, '/')
             name = pattern.replace(MODEL_FIELD, topic_name_from_frame_id(frame_id)).replace(
                 WORLD_FIELD, topic_name_from_frame_id(world))
-            places.setdefault(full_name(name), {}).setdefault(model, name)
-    topics, too_long, warnings = {}, list[str](), []
+            try:
+                places.setdefault(full_name(name), {}).setdefault(model, name)
+            except RuntimeError:  # an RCLError, which no public name has
+                too_long.append(model or name)
     for full, names in places.items():
         model, name = next(iter(names.items()))
         if len(names) > 1:
@@ -161,12 +164,12 @@ def topics_from_patterns(
         if len(full) <= LONGEST_FULL_NAME:
             topics[name] = model
         else:
-            too_long += names
+            too_long += [each or name for each in names]
     if too_long:
         warnings.insert(
             0, f'{parameter} has no topic for {names_in_line(too_long)}: its name would be longer '
             'than the middleware allows')
-    if patterns and not places:
+    if patterns and not places and not too_long:
         warnings.append(f'{parameter} names no topic, because {reason_for_none}')
     return topics, warnings
 

@@ -151,7 +151,7 @@ class _Repairer:
         escaped = text.decode('utf-8', errors='surrogateescape')
         decoded = self._replaced(escaped, _ESCAPED_BYTES).partition('\0')[0]
         parts = []
-        is_mismatched = False  # which libxml2 finds in the element that is read
+        is_mismatched = False  # libxml2 finds it in an element that is kept
         position = highest_rank = 0
         while position < len(decoded):
             token = _TOKEN.match(decoded, position)
@@ -172,11 +172,9 @@ class _Repairer:
                 break
             else:
                 rank = _RANKS.get(token['tag'], 0)
-                if not self._open and rank > highest_rank:
+                if not self._open and rank > highest_rank and not is_mismatched:
                     highest_rank = rank
                     if self._is_after_root:
-                        if is_mismatched:
-                            return None
                         self._note('elements beside the outermost element')
                         parts, self._is_after_root = [_blank(''.join(parts))], False
                 parts.append(self._repaired_tag(token, rest))

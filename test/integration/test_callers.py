@@ -208,7 +208,7 @@ def test_very_many_values_for_a_parameter_are_refused_in_one_sentence(listener):
     assert len(results) == 1000
     assert not any(result.successful for result in results)
     assert results[0].reason == (
-        'parameter sdf_file is a list of 50000 values; a list can have at most 1000')
+        'parameter sdf_file has 50000 values; it must have at most 1000')
     assert sum(len(result.reason) for result in results) < 100_000
 
 

@@ -604,5 +604,5 @@ def test_a_topic_that_cannot_be_made_is_reported_and_the_others_are_made(followi
     following.follow(following.frames, topics, EACH)
     assert [each.topic_name for each in following.node.subscriptions] == ['/b/j']
     log = capfd.readouterr().err
-    assert 'no subscription to {nowhere}/j: ' in log
+    assert 'no messages from {nowhere}/j: ' in log
     assert log.count('a warning') == 1

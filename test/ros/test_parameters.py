@@ -5,7 +5,7 @@
 import pytest
 
 from sdf_pose_bridge.ros.given_parameters import settings_from_values
-from sdf_pose_bridge.ros.parameters import DECLARATIONS
+from sdf_pose_bridge.ros.parameters import Declaration, DECLARATIONS
 from sdf_pose_bridge.tf.joint_positions import UnreportedJoints
 from sdf_pose_bridge.tf.tree import TfOptions
 
@@ -23,3 +23,17 @@ def test_what_is_read_has_all_that_a_load_needs():
 @pytest.mark.parametrize('name', DECLARATIONS)
 def test_the_default_is_a_value_that_is_allowed(name):
     DECLARATIONS[name].convert(DECLARATIONS[name].default)
+
+
+@pytest.mark.parametrize(('name', 'end'), [
+    ('root_frame', '; at most 255 characters'), ('on_missing_include', 'error, skip'),
+    ('pose_topics', '; at most 1000 values of at most 255 characters'), ('watch', 'true or false'),
+])
+def test_the_rule_of_a_text_names_its_limit(name, end):
+    assert DECLARATIONS[name].rule.endswith(end)
+
+
+@pytest.mark.parametrize(('default', 'most'), [('', 0), ([], 0), ('a', 0), (1.0, 9), (True, 9)])
+def test_a_text_without_a_limit_cannot_be_declared(default, most):
+    with pytest.raises(TypeError, match='needs most_characters'):
+        Declaration(default, 'What it is.', 'its rule', str, most_characters=most)

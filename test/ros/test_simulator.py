@@ -131,6 +131,33 @@ def test_a_wrong_number_is_told(node, simulator, service, names, states, line, c
         spin_until(node.executor, lambda: len(requests) > 1)
 
 
+def test_after_two_answers_with_too_much_it_is_not_asked_until_a_change(
+        node, simulator, service, monkeypatch, capfd):
+    monkeypatch.setattr(module, 'UNFILTERED_PERIOD_S', 0.0)
+    requests = service(['a', 'b', 'c'], 3)
+    spin_until(node.executor, lambda: len(requests) == 2)
+    spin_as_long_as_many_calls(node)
+    assert len(requests) == 2
+    line = 'it is not called again until a parameter is set or the file is read again'
+    assert capfd.readouterr().err.count(line) == 1
+    # Entities of the simulator, which have the file read again, are no such change.
+    simulator._followed_others = ['before']
+    follow(simulator, 'a')
+    spin_as_long_as_many_calls(node)
+    assert len(requests) == 2
+    follow(simulator, 'a')
+    spin_until(node.executor, lambda: len(requests) == 4)
+
+
+def test_a_filter_that_would_be_too_long_is_none(simulator, monkeypatch):
+    follow(simulator, 'a', 'b')
+    monkeypatch.setattr(module, 'MOST_CHARACTERS_OF_FILTER', len('a|b'))
+    follow(simulator, 'a', 'b')
+    assert simulator._request.filters.filter == '^(a|b)$'
+    follow(simulator, 'a', 'bc')
+    assert simulator._request.filters.filter == ''
+
+
 def test_answers_that_take_long_are_asked_for_less_often(
         node, simulator, service, monkeypatch, capfd):
     monkeypatch.setattr(module, 'LARGEST_SHARE', 1e-2)

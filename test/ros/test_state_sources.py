@@ -76,6 +76,18 @@ def test_topics_of_poses_have_the_types_of_their_publishers(sources):
     sources.wait_for(a='PoseStamped', b='Odometry')
 
 
+def test_a_simulator_whose_name_is_too_long_in_the_namespace_is_told(
+        make_node, make_executor, beside, capfd):
+    node = make_node('bridge', '-r', f'__ns:=/{"s" * 30}')
+    make_executor(node)
+    sources, name = Sources(node, None, beside), 'x' * 220
+    sources.follow(TOPICS, settings_from_values({
+        'sdf_file': 'a.sdf', 'simulator': name, 'simulator_others': True}), POSITIONS)
+    assert sources.sources.simulator is None
+    assert f'no messages from {name}/get_entities_states: ' in capfd.readouterr().err
+    sources.sources.end()
+
+
 def test_a_topic_that_changes_its_type_is_followed_anew(sources, node, other_context):
     # A process has one type for a topic.
     first, second = (rclpy.create_node(name, context=other_context) for name in 'pq')

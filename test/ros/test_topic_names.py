@@ -240,6 +240,16 @@ def test_a_model_whose_topic_would_have_too_long_a_name_has_none():
     assert f'joint_states_topics has no topic for "{name}": its name would be longer' in warning
 
 
+@pytest.mark.parametrize(('pattern', 'shown'), [('x' * 240, 'x'), ('x' * 100 + '/{model}', 'm')])
+def test_a_name_that_is_too_long_in_its_namespace_is_none(make_node, pattern, shown):
+    node = make_node('n', '-r', f'__ns:=/{"s" * 30}')
+    named, (warning,) = topics_from_patterns(
+        'parameter', [pattern], 'w', ['m' * 240], node.resolve_topic_name, '')
+    assert named == {}
+    assert 'would be longer than the middleware allows' in warning
+    assert warning.startswith(f'parameter has no topic for "{shown * 20}')
+
+
 def test_patterns_that_name_no_topic_of_a_model_file_are_reported():
     named, (warning,) = joint_state_topics(['{model}/joint_states'], '', [])
     assert named == {}

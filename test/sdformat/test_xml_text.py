@@ -21,7 +21,7 @@ def root_of(text):
 @pytest.mark.parametrize('text', [
     b'<a', b'<a b=c/>', b'<a><b c></b></a>', b'<a/>text', b'<a><?late?></a>', b'<a/><?late?>',
     b'<!-- <a/>', b'<a><![CDATA[</a>', b'<a/><b>', b'<a/><b></c>', b'<a/><b><c></b></c>',
-    b'<a/><?late?></b>', b'<a></ a>', b'<a><b></a></b><sdf/>', b'<a/><sdf/>text',
+    b'<a/><?late?></b>', b'<a></ a>', b'<a/><sdf/>text',
 ])
 def test_text_that_libsdformat_refuses_is_not_repaired(text):
     assert repaired(text) is None
@@ -62,6 +62,11 @@ def test_outermost_element_that_is_read(text, tag, line):
     root = root_of(text)
     assert (root.tag, root.sourceline) == (tag, line)
     assert [fault for _, fault in repaired(text)[1]] == ['elements beside the outermost element']
+
+
+def test_an_element_that_is_not_read_is_well_formed_too():
+    with pytest.raises(etree.XMLSyntaxError, match='mismatch'):
+        root_of(b'<a><b></a></b><sdf/>')
 
 
 @pytest.mark.parametrize(('text', 'value'), [
