@@ -119,7 +119,8 @@ lint: setup
 
 bench: setup
 	@[[ -d benchmarks ]] || { echo 'There are no benchmarks yet.' >&2; exit 1; }
-	@$(in_shell) python -m benchmarks $(ARGS)
+	@. underlay/setup.bash && PYTHONPATH=test:test/integration:$$PYTHONPATH \
+	  exec python -m benchmarks $(ARGS)
 
 differential: setup
 	@. underlay/setup.bash && PYTHONPATH=test:$$PYTHONPATH exec python -m differential $(ARGS)

@@ -38,3 +38,10 @@ def executables_in(folder):
     """Skip where files in a folder cannot be executed."""
     if os.statvfs(folder).f_flag & os.ST_NOEXEC:
         pytest.skip('needs a folder for temporary files that is not mounted with noexec')
+
+
+def gazebo():
+    """Skip without Gazebo Fortress and the programs of its transport, which ``.ci/run`` makes."""
+    from gazebo import FOLDER, TOOL
+    if not all(map(os.path.exists, (FOLDER / 'bin/gazebo_server', TOOL('service')))):
+        pytest.skip('needs Gazebo')
