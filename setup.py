@@ -150,6 +150,8 @@ setup(
         (SHARE, ['package.xml']),
         ('share/man/man1', ['resource/sdf_pose.1']),
         ('share/bash-completion/completions', ['resource/completions/sdf_pose']),
+        # pip puts its own program of this name there.
+        *([] if MAKES_A_WHEEL else [('bin', ['resource/bin/sdf_pose'])]),
         *(pair for folder in shared_folders() for pair in data_files_of(folder)),
     ],
     cmdclass={'install_scripts': InstallScripts},

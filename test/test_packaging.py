@@ -113,6 +113,8 @@ def test_people_are_those_of_package_xml():
     maintainer = root.find('maintainer')
     assert (found['maintainer'], found['maintainer_email'], found['author']) == (
         maintainer.text, maintainer.get('email'), root.findtext('author'))
+    assert f'the {maintainer.text}, {found["maintainer_email"]}:' in (
+        ROOT / 'README.md').read_text()
 
 
 def test_the_address_of_the_repository_stands_in_one_place():
@@ -147,6 +149,8 @@ def test_libraries_of_view_are_those_that_it_names_in_its_errors():
 def test_names_of_other_programs_are_used_in_a_ros_workspace_only(command, node):
     scripts = arguments_of_setup(command)['entry_points']['console_scripts']
     assert {script.split(' = ')[0] for script in scripts} == {'sdf_pose', *node}
+    # pip puts the programs themselves there.
+    assert ('bin' in dict(arguments_of_setup(command)['data_files'])) is ('bridge' in node)
 
 
 @pytest.fixture(scope='module')

@@ -176,6 +176,16 @@ def test_setup_bash_puts_the_environment_first_once_and_silently(built):
         str(ROOT / f'.underlay{SUFFIX}/bin/python'), '0.0 0.0 0.0 1.0']
 
 
+def test_a_shell_with_the_workspace_alone_has_the_command_line(built):
+    workspace = ROOT / f'install{SUFFIX}'
+    result = completed(
+        ['bash', '-c', f'. {workspace}/local_setup.bash; type -P sdf_pose; '
+         'sdf_pose convert --from rpy --to quaternion 0 0 0'], env={'PATH': os.defpath}, cwd='/')
+    assert (result.returncode, result.stderr) == (0, '')
+    assert result.stdout.splitlines() == [
+        str(workspace / 'sdf_pose_bridge/bin/sdf_pose'), '0.0 0.0 0.0 1.0']
+
+
 def test_the_node_is_started_with_words_for_a_second_shell(built, tmp_path):
     result = shell(f'{built}; python {ROOT}/underlay/run.py {tmp_path} missing.sdf')
     assert result.returncode == 1

@@ -58,7 +58,6 @@ MISSING_PACKAGES = {
             'RIHS01_0a76170d0c1c90e1eaf805cfab78ea801d1f82df309a28c1f0fae4b570f19754'},
 }
 BRIDGE = 'sdf_pose_bridge'
-COMMAND_LINE = 'sdf_pose'
 INTERFACES = 'sdf_pose_bridge_interfaces'
 BUILD_MACHINE_PREFIX = re.compile(r'/opt/python/cp3\d+-cp3\d+/(include|lib)/python3\.\d+')
 # What a failed command printed, and what it means; the first that fits is said.
@@ -295,12 +294,11 @@ class Underlay:
             _remove(BUILD / BRIDGE)
             _remove(INSTALL / BRIDGE)
         self._colcon(COLCON_LOG, BUILD, INSTALL, '--packages-select', BRIDGE)
-        # In the PATH of setup.bash under the names that pip gives them: "bridge" is a program of
-        # the system there.
-        for name, executable in ((COMMAND_LINE, COMMAND_LINE), (BRIDGE, 'bridge')):
-            link = UNDERLAY / 'bin' / name
-            link.unlink(missing_ok=True)
-            link.symlink_to(INSTALL / BRIDGE / 'lib' / BRIDGE / executable)
+        # In the PATH of setup.bash under the name that pip gives it: "bridge" is a program of the
+        # system there.
+        link = UNDERLAY / 'bin' / BRIDGE
+        link.unlink(missing_ok=True)
+        link.symlink_to(INSTALL / BRIDGE / 'lib' / BRIDGE / 'bridge')
 
     def _colcon(self, log: Path, build: Path, install: Path, *arguments: str) -> None:
         cmake = [
