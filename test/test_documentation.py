@@ -18,11 +18,10 @@ from sdf_pose_bridge.cli.main import main
 PAGES = [ROOT / 'README.md', ROOT / 'CONTRIBUTING.md', *sorted((ROOT / 'docs').glob('*.md'))]
 
 TESTED_ELSEWHERE = {
-    'ros2 run sdf_pose_bridge bridge': 'test_readme.py starts the bridge in this way',
+    'ros2 run sdf_pose_bridge bridge': 'test_documented_nodes.py starts the bridge in this way',
     'ros2 topic echo': 'test_readme.py compares the message',
     'ros2 service call': 'test_readme.py and test_callers.py make the calls',
     'ros2 param set': 'test_readme.py and test_bridge_changes.py set parameters',
-    'sdf_pose gz_bridge': 'test_gz_bridge.py writes both files, and makes settings of one',
     'sdf_pose diff': 'test_diff.py compares files, also for git',
     'git difftool': 'test_diff.py has git compare two commits',
     'sdf_pose check --format github': 'test_printing.py compares annotations',
@@ -43,7 +42,6 @@ NOT_RUN = {
     'ros2 launch': 'launch is not on PyPI; test_launch_files.py runs the files where it is',
     'gz ': 'needs Gazebo',
     'sdf_pose view examples/work_cell.sdf': 'opens a browser; test_view.py writes the page',
-    'sdf_pose poses robot.sdf': "the file is the reader's",
     'FASTDDS_': 'needs a network that loses packets, or a profile of the user',
     'ROS_SUPER_CLIENT': 'the ros2 command line is not on PyPI',
     'export ROS_': "sets variables of the reader's shell",
@@ -89,25 +87,19 @@ def test_the_lists_name_nothing_that_is_gone():
         assert any(command.startswith(known) for command in commands()), known
 
 
-ARM_OF_URDF = """<robot name="arm">
-<link name="base_link"/><link name="camera"/><link name="camera_optical"/>
-<joint name="mount" type="fixed">
-  <origin xyz="0.5 0 1" rpy="0 0.8 0"/>
-  <parent link="base_link"/><child link="camera"/>
-</joint>
-<joint name="rep103" type="fixed">
-  <origin rpy="-1.5707963 0 -1.5707963"/><parent link="camera"/><child link="camera_optical"/>
-</joint></robot>"""
-"""The page about calibration shows a line of it."""
-
-
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     for name in ('examples', 'docs/pictures'):
         shutil.copytree(ROOT / name, tmp_path / name)
     # As the page about calibration says.
     shutil.copy(tmp_path / 'examples/work_cell.sdf', tmp_path / 'my_cell.sdf')
-    (tmp_path / 'arm.urdf').write_text(ARM_OF_URDF)
+    # As these pages say.
+    for page, name in ('README.md', 'cell.sdf'), ('moving_here.md', 'shop.sdf'):
+        (tmp_path / name).write_text(next(
+            '\n'.join(lines[:lines.index('</sdf>') + 1]) for each, lines in blocks()
+            if each.name == page and lines[0].startswith('<sdf ')))
+    (tmp_path / 'src').mkdir()
+    (tmp_path / 'src/sdf_pose_bridge').symlink_to('..')
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
@@ -130,8 +122,8 @@ def test_commands(command, folder, capsys):
 
 def shown_after(page, command):
     for each, lines in blocks():
-        if each.name == page and lines[0] == f'$ {command}':
-            return lines[1:]
+        if each.name == page and f'$ {command}' in lines:
+            return lines[lines.index(f'$ {command}') + 1:]
     raise AssertionError(command)
 
 
@@ -150,17 +142,17 @@ def test_outputs(page, command, folder, capsys):
 
 
 def test_the_shown_lines_of_a_urdf_change(folder, capsys):
-    (command,) = (each for each in commands() if each.startswith('sdf_pose set arm.urdf'))
+    (command,) = (each for each in commands() if each.startswith('sdf_pose set examples/arm.urdf'))
     main(shlex.split(command)[1:])
     assert [line for line in capsys.readouterr().out.splitlines() if line[1:3] == '  ' and (
         line[0] in '+-')] == shown_after('calibration.md', command)
 
 
-@pytest.mark.parametrize('page', ['README.md', 'python_api.md'])
+@pytest.mark.parametrize('page', ['README.md', 'python_api.md', 'joints.md', 'urdf.md'])
 def test_snippets_of_python(page, folder):
     snippets = [
         '\n'.join(lines) for each, lines in blocks()
-        if each.name == page and lines[0].startswith('import ')]
+        if each.name == page and re.match('import |from sdf_pose_bridge import', lines[0])]
     assert snippets
     for snippet in snippets:
         done = completed([sys.executable, '-c', snippet])

@@ -178,9 +178,10 @@ def test_setup_bash_puts_the_environment_first_once_and_silently(built):
 
 def test_a_shell_with_the_workspace_alone_has_the_command_line(built):
     workspace = ROOT / f'install{SUFFIX}'
-    result = completed(
-        ['bash', '-c', f'. {workspace}/local_setup.bash; type -P sdf_pose; '
-         'sdf_pose convert --from rpy --to quaternion 0 0 0'], env={'PATH': os.defpath}, cwd='/')
+    script = (
+        f'. {workspace}/local_setup.bash; type -P sdf_pose; '
+        'sdf_pose convert --from rpy --to quaternion 0 0 0')
+    result = completed(['bash', '-c', script], env={'PATH': os.defpath}, cwd='/')
     assert (result.returncode, result.stderr) == (0, '')
     assert result.stdout.splitlines() == [
         str(workspace / 'sdf_pose_bridge/bin/sdf_pose'), '0.0 0.0 0.0 1.0']
