@@ -38,7 +38,6 @@ NOT_RUN = {
     'ros2 run ros_gz_bridge': 'needs Gazebo',
     'ros2 run tf2_ros': 'needs tf2_ros',
     'ros2 run joint_state_publisher_gui': 'needs joint_state_publisher_gui',
-    'ros2 run robot_state_publisher': 'needs robot_state_publisher',
     'ros2 launch': 'launch is not on PyPI; test_launch_files.py runs the files where it is',
     'gz ': 'needs Gazebo',
     'sdf_pose view examples/work_cell.sdf': 'opens a browser; test_view.py writes the page',
