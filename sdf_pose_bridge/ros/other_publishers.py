@@ -145,7 +145,7 @@ class OtherPublishers:
             (first, other), names = next(iter(found.items())), others[topic]
             in_file = [child for child in found if child in {
                 frame_id for each in scene.sensors.values()
-                for frame_id in (each.frame_id, each.optical_frame_id)}]
+                for frame_id in (each.frame_id, each.older_frame_id, each.optical_frame_id)}]
             self.problems[topic.name] = line = (
                 f'frame {names_in_line([first])} is also published on {topic.name} by '
                 f'{"" if len(names) == 1 else "one of "}{names_in_line(names)}, with the parent '

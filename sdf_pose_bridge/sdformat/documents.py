@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from sdf_pose_bridge.errors import AttributeInvalidError, FileReadError, ParsingError, Place
 from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.sdformat.gazebo_releases import warn_of_releases
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.templates import check_is_expanded
 from sdf_pose_bridge.sdformat.urdf.conversion import sdf_from_urdf
@@ -57,6 +58,7 @@ def document_from_file(
     sources.add_tree(path, root, file.lines)
     sources.problems.extend(file.warnings)
     check_is_expanded(root, path, file.text, sources)
+    warn_of_releases(root, sources)
     gazebo_children: dict[int, Any] = {}
     urdf_root = None
     if root.tag == 'robot':

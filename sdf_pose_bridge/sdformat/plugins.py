@@ -20,9 +20,6 @@ from sdf_pose_bridge.sdformat.xml_tree import (
 _CLASS = re.compile(r'(?:gz::sim|ignition::gazebo)::systems::(\w+)')
 _LIBRARY = re.compile(r'(?:lib)?(?:gz-sim|ignition-gazebo)\d*-(.+)-system(?:\.so)?')
 
-_FRAME_ID_TAGS = ('frame_id', 'gz_frame_id', 'ignition_frame_id')
-"""Elements of a sensor with the frame id of its messages; the first of them counts."""
-
 _TOPIC_PATHS = (
     'topic', 'camera/camera_info_topic', 'camera/triggered', 'camera/trigger_topic',
     'camera/box_type', 'contact/topic')
@@ -63,7 +60,9 @@ class SensorDetails(NamedTuple):
     type: str
     """As written: ``camera``, ``gpu_lidar``, ..."""
     frame_id: str
-    """The frame id of Gazebo's messages if the file sets it; else empty."""
+    """The frame id of Gazebo's messages from gz-sensors 9 on if the file sets it; else empty."""
+    older_frame_id: str
+    """That of gz-sensors 8, of Harmonic."""
     is_camera: bool
     """Whether it has an optical frame."""
     optical_frame_id: str
@@ -75,10 +74,11 @@ class SensorDetails(NamedTuple):
 
 def sensor_details_from_element(xml: XmlElement, *, reads_topics: bool) -> SensorDetails:
     """Return the details of a sensor."""
-    frame_ids = (value_of(each) for tag in _FRAME_ID_TAGS for each in child_elements(xml, tag))
+    # As in the constructor of gz::sensors::Sensor.
+    older_frame_id = value_at(xml, 'gz_frame_id')
     sensor_type = attribute_of(xml, 'type')
     values = ((path, value_at(xml, path)) for path in _TOPIC_PATHS if reads_topics)
     return SensorDetails(
-        sensor_type, next(filter(None, frame_ids), ''),
+        sensor_type, value_at(xml, 'frame_id') or older_frame_id, older_frame_id,
         first_child(xml, 'camera') is not None or sensor_type in CAMERA_TYPES,
         value_at(xml, 'camera/optical_frame_id'), tuple(each for each in values if each[1]))

@@ -20,9 +20,10 @@ from sdf_pose_bridge.sdformat.xml_tree import with_ancestors, written_tag, XmlEl
 
 _HINTS = {
     'origin': 'it is from URDF; SDFormat has <pose>x y z roll pitch yaw</pose>',
-    'sensor/ignition_frame_id': 'it is used all the same; version 1.12 has <frame_id> instead',
+    'sensor/ignition_frame_id':
+        'no supported release of Gazebo reads it; write <gz_frame_id>, in version 1.12 <frame_id>',
     'gz_frame_id': 'Gazebo looks for it in <sensor>',
-    'ignition_frame_id': 'Gazebo looks for it in <sensor>',
+    'ignition_frame_id': 'write <gz_frame_id> in <sensor>',
     **{f'model/{tag}': 'URDF that is made of the model has it' for tag in URDF_TAGS},
     'pose/@frame': 'since version 1.7 it is relative_to',
     'use_parent_model_frame': 'since version 1.7, true is <xyz expressed_in="__model__">',

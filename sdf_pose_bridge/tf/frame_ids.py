@@ -7,8 +7,9 @@ Make TF frame ids of scoped SDF names, and names of topics of frame ids.
 that may share a name with elements of other kinds have the kind before their own name:
 ``robot/link/visual/name``.
 
-Gazebo stamps a sensor's messages with the frame id that the file sets (``frame_id``, before
-version 1.12 ``gz_frame_id``), or with one made of the sensor's name. A camera's optical frame is
+Gazebo stamps a sensor's messages with the frame id that the file sets (``frame_id`` or
+``gz_frame_id``, and Harmonic with ``gz_frame_id`` alone), or with one made of the sensor's name.
+Where releases differ, the sensor has both frames. A camera's optical frame is
 named by ``optical_frame_id``, or like the camera with ``_optical`` appended. Where the frame id of
 a camera is that of a link in the place of the optical frame, it names this frame.
 
@@ -135,7 +136,7 @@ class FrameNaming(NamedTuple):
 
 def frame_ids_with_sensors(
     names: Mapping[int, str], scene: Scene, naming: FrameNaming, root_frame: str,
-) -> tuple[dict[int, str], dict[int, str], dict[int, str]]:
+) -> tuple[dict[int, str], dict[int, str], dict[int, str], dict[int, str]]:
     """
     Make frame ids, and use those that the file sets for sensors.
 
@@ -145,8 +146,9 @@ def frame_ids_with_sensors(
     :param names: the name of each published element, as :meth:`FrameNaming.names_from_scene`
         makes it.
     :return: the frame ids without those of sensors whose id belongs to another kind of element, or
-        of a sensor in the same place; the name of the frame of each published sensor; and those
-        that mean the optical frame of a camera, whose own name then is that of the link there.
+        of a sensor in the same place; the name of the frame of each published sensor; those
+        that mean the optical frame of a camera, whose own name then is that of the link there; and
+        the frame ids that only Gazebo Harmonic sends.
     """
     frame_ids = {each: naming.frame_id_from_name(name) for each, name in names.items()}
     sensor_names = {each: names[each] for each in names if each in scene.sensors}
@@ -171,7 +173,12 @@ def frame_ids_with_sensors(
                 del frame_ids[sensor]
                 continue
         first_sensors.setdefault(frame_ids[sensor], sensor)
-    return frame_ids, sensor_names, optical_names
+    details = {each: scene.sensors[each] for each in sensor_names}
+    older_ids = {
+        sensor: naming.frame_id_from_name(
+            naming.name_from_frame_id(each.older_frame_id) or names[sensor])
+        for sensor, each in details.items() if each.older_frame_id != each.frame_id}
+    return frame_ids, sensor_names, optical_names, older_ids
 
 
 def misplacement(pose: Pose, other: Pose) -> float:

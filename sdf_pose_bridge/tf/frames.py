@@ -9,7 +9,7 @@ SDFormat does not have. In URDF a joint is where its child link is, and has one 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from functools import partial
 import math
 from typing import NamedTuple
@@ -117,9 +117,27 @@ def optical_frames_of_cameras(
     return optical_frames
 
 
+def older_frames_of_sensors(
+    older_ids: Mapping[int, str], used: Container[str], nearest_frames: Indices, scene: Scene,
+) -> list[Frame]:
+    """
+    Make a frame for each further frame id in messages of sensors.
+
+    :param older_ids: these ids, as :func:`frame_ids_with_sensors` makes them.
+    :param used: the ids of all other frames.
+    :param nearest_frames: the frame of each element, or the one that it is in.
+    """
+    sensors: dict[str, int] = {}
+    for sensor, frame_id in older_ids.items():
+        sensors.setdefault(frame_id, sensor)
+    return [
+        Frame(frame_id, sensor, nearest_frames.item(sensor), scene.pose_of(sensor))
+        for frame_id, sensor in sensors.items() if frame_id not in used]
+
+
 def check_frames_of_sensors(
-    frames: Frames, sensor_names: Iterable[int], scene: Scene, root_frame: str,
-    naming: FrameNaming, problems: Problems,
+    frames: Frames, sensor_names: Iterable[int], older_ids: Mapping[int, str], scene: Scene,
+    root_frame: str, naming: FrameNaming, problems: Problems,
 ) -> None:
     """
     Warn about each sensor whose data have the frame id of another element in another place.
@@ -135,9 +153,12 @@ def check_frames_of_sensors(
         data_poses = (pose, optical_pose) if details.is_camera else (pose,)
         for what, name, poses in (
                 ('frame id', details.frame_id, data_poses),
+                ('frame id in Gazebo Harmonic', older_ids.get(sensor, ''), data_poses),
                 ('optical frame id', details.optical_frame_id, (optical_pose,))):
             other = owners.get(naming.frame_id_from_name(naming.name_from_frame_id(name)))
-            if other is None or other in scene.sensors:
+            # Two sensors with one frame id are an error, unless only Harmonic sends it.
+            if other in (None, sensor) or (
+                    other in scene.sensors and 'Harmonic' not in what):
                 continue
             named = scene.pose_of(other)
             nearest = min(poses, key=partial(misplacement, named))

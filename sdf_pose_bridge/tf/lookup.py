@@ -58,7 +58,9 @@ class PoseLookup:
         self._tree = tree
         self._joints = positions
         self._indices = {frame_id: index for index, frame_id in enumerate(tree.frame_ids)}
-        self._frame_ids = dict(zip(tree.elements.tolist(), tree.frame_ids, strict=True))
+        # Of two frames of a sensor, the first one counts.
+        self._frame_ids = dict(zip(
+            tree.elements[::-1].tolist(), tree.frame_ids[::-1], strict=True))
 
     def pose(self, frame: str, relative_to: str = '') -> FoundPose:
         """

@@ -32,6 +32,7 @@ from sdf_pose_bridge.tf.frames import (
     Frame,
     Frames,
     frames_at_joints,
+    older_frames_of_sensors,
     optical_frames_of_cameras,
 )
 from sdf_pose_bridge.tf.joint_motion import JointMotion, MovingFrames
@@ -102,7 +103,7 @@ class TfTree(ReadOnly):
     """Shape (n, 7): pose of each frame in its parent; the identity if it has none."""
     elements: Indices
     """The element of the scene that each frame belongs to; -1 for an optical frame and for one
-    at a joint."""
+    at a joint. A sensor has two frames if Gazebo Harmonic sends another id than later releases."""
     nearest_frames: Indices
     """The frame of each element of the scene, or of the nearest element above it in TF that
     has one; or :data:`ROOT_IS_PARENT`, or :data:`NO_PARENT`."""
@@ -167,7 +168,7 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     problems = Problems(scene.files)
     tf_parents = tf_parents_from_scene(scene)
     elements = _published_elements(scene, options, problems)
-    frame_ids, sensor_names, optical_names = frame_ids_with_sensors(
+    frame_ids, sensor_names, optical_names, older_ids = frame_ids_with_sensors(
         dict(zip(elements.tolist(), _names(naming, scene, elements, problems), strict=True)),
         scene, naming, options.root_frame)
     # The implicit root of a URDF is its link "world", unless the root frame has its frame id.
@@ -185,10 +186,15 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     nearest_frames, parents = _nearest_frames_and_parents(
         scene, tf_parents, elements, is_detached)
     frames = Frames(list(frame_ids.values()), elements, parents, scene.poses[elements])
-    check_frames_of_sensors(frames, sensor_names, scene, options.root_frame, naming, problems)
-    if options.optical_frames:
-        frames = frames.with_frames(
-            optical_frames_of_cameras(frames, sensor_names, optical_names, scene, naming))
+    optical_frames = optical_frames_of_cameras(
+        frames, sensor_names, optical_names, scene, naming) if options.optical_frames else []
+    frames = frames.with_frames(older_frames_of_sensors(
+        older_ids, {'', options.root_frame, *frames.ids, *(each[0] for each in optical_frames)},
+        nearest_frames, scene))
+    element_count = len(frames.ids)
+    check_frames_of_sensors(
+        frames, sensor_names, older_ids, scene, options.root_frame, naming, problems)
+    frames = frames.with_frames(optical_frames)
     _check_frame_ids(frames, scene, options.root_frame, problems)
     problems.raise_errors()
     _warn_of_loops(tf_parents, scene, problems)
@@ -225,7 +231,7 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
             frames.poses[reference], frames.poses),
         parents=frames.parents,
         transforms=frames.transforms(),
-        elements=np.where(np.arange(len(frames.ids)) < len(elements), frames.owners, -1),
+        elements=np.where(np.arange(len(frames.ids)) < element_count, frames.owners, -1),
         nearest_frames=nearest_frames,
         moving=moving,
         odometry=odometry,

@@ -348,14 +348,19 @@ def test_sensor_has_a_type():
     ('', ''),
     ('<gz_frame_id/>', ''),
     ('<gz_frame_id>a/b</gz_frame_id>', 'a/b'),
-    ('<ignition_frame_id> a </ignition_frame_id>', 'a'),
-    ('<ignition_frame_id>old</ignition_frame_id><gz_frame_id>new</gz_frame_id>', 'new'),
+    ('<ignition_frame_id>a</ignition_frame_id>', ''),
     ('<gz_frame_id>old</gz_frame_id><frame_id>new</frame_id>', 'new'),
     ('<gz_frame_id>old</gz_frame_id><frame_id/>', 'old'),
-    ('<ignition_frame_id>old</ignition_frame_id><gz_frame_id/>', 'old'),
 ])
 def test_sensor_has_a_frame_id(content, frame_id):
     assert sensor_with(content).frame_id == frame_id
+
+
+@pytest.mark.parametrize(('content', 'frame_id'), [
+    ('<gz_frame_id> a </gz_frame_id><frame_id>b</frame_id>', 'a'), ('<frame_id>b</frame_id>', ''),
+])
+def test_harmonic_reads_one_element(content, frame_id):
+    assert sensor_with(content).older_frame_id == frame_id
 
 
 @pytest.mark.parametrize(('sensor_type', 'content', 'is_camera', 'optical_frame_id'), [

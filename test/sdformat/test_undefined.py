@@ -38,8 +38,8 @@ def messages_of(text):
      ('<relative_to> in <pose> is not defined in SDFormat; it is an attribute: '
      'relative_to="..."')),
     (link_with('<sensor name="s" type="imu"><ignition_frame_id>f</ignition_frame_id></sensor>'),
-     ('<ignition_frame_id> in <sensor> is not defined in SDFormat; it is used all the same; '
-      'version 1.12 has <frame_id> instead')),
+     ('<ignition_frame_id> in <sensor> is not defined in SDFormat; no supported release of '
+      'Gazebo reads it; write <gz_frame_id>, in version 1.12 <frame_id>')),
     (link_with('<gz_frame_id>f</gz_frame_id>'),
      '<gz_frame_id> in <link> is not defined in SDFormat; Gazebo looks for it in <sensor>'),
     (model_file(LINK + '<sensor name="s" type="imu"/>'),

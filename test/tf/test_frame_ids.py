@@ -4,7 +4,7 @@
 
 import numpy as np
 import pytest
-from sdf_texts import element, fixed_joint, link_with, model_file, TWO_LINKS, world_file
+from sdf_texts import element, fixed_joint, joint, link_with, model_file, TWO_LINKS, world_file
 from tf_checks import model, only_tree_error, parents_of, pose_of, tree_of
 
 from sdf_pose_bridge import load_text
@@ -80,9 +80,67 @@ def lidar(name, frame_id='', pose='1 0 0 0 0 0'):
     ('laser', 'r/', {'r/m': 'r/l', 'r/l': '', 'r/laser': 'r/l'}),
     ('m::laser', '', {'m': 'l', 'l': '', 'm/laser': 'l'})])
 def test_a_frame_id_becomes_a_frame_unless_it_is_that_of_the_root(frame_id, prefix, parents):
-    text = link_with(lidar('s', frame_id))
-    for each in (text, text.replace('gz_frame_id', 'ignition_frame_id')):
-        assert parents_of(each, frame_prefix=prefix) == parents
+    assert parents_of(link_with(lidar('s', frame_id)), frame_prefix=prefix) == parents
+
+
+TAGS = {'f': '<frame_id>f</frame_id>', 'g': '<gz_frame_id>g</gz_frame_id>',
+        'i': '<ignition_frame_id>i</ignition_frame_id>'}
+
+
+@pytest.mark.parametrize(('scoped', 'default'), [(True, 'm/l/s'), (False, 'l/s')])
+@pytest.mark.parametrize(('tags', 'ids'), [
+    ('', ['{}']), ('i', ['{}']), ('f', ['f', '{}']), ('fi', ['f', '{}']), ('g', ['g']),
+    ('gi', ['g']), ('fg', ['f', 'g']), ('fgi', ['f', 'g'])])
+def test_each_frame_id_that_a_release_sends_has_a_frame_in_one_place(tags, ids, scoped, default):
+    sensor = ('<sensor name="s" type="gpu_lidar"><pose>1 0 0 0 0 0</pose>'
+              f'{"".join(map(TAGS.get, tags))}</sensor>')
+    link = f'<link name="l">{sensor}</link>'
+    tree = tree_of(in_world(link) if scoped else model_file(link))
+    found = [each.format(default) for each in ids]
+    assert list(tree.frame_ids[2:]) == found
+    assert [pose_of(tree, each)[0] for each in found] == [1.0] * len(found)
+    assert list(tree.parent_ids[2:]) == [tree.frame_ids[1], *found[:1]][:len(found)]
+    assert tree.elements.tolist()[-len(found):] == [tree.elements.item(2)] * len(found)
+
+
+def test_both_frame_ids_of_a_sensor_move_with_its_link():
+    text = model_file('<link name="l"/><link name="k"><sensor name="s" type="camera"><frame_id>f'
+                      '</frame_id></sensor></link>' + joint(
+                          '<parent>l</parent><child>k</child>', joint_type='revolute'))
+    parents = parents_of(text, use_joint_states=True)
+    assert {each: parents[each] for each in ('k/s', 'f', 'f_optical')} == {
+        'k/s': 'f', 'f': 'k', 'f_optical': 'f'}
+
+
+def test_the_frame_of_harmonic_is_in_the_link_whose_id_later_releases_send():
+    text = model_file('<link name="l"/><link name="k"><sensor name="s" type="imu"><pose>1 0 0 0 0 '
+                      '0</pose><frame_id>l</frame_id></sensor></link>')
+    assert parents_of(text)['k/s'] == 'k'
+    (warning,) = tree_of(text).warnings
+    assert warning.message.startswith('the frame id "l" of sensor "m::k::s" is that of a frame')
+
+
+@pytest.mark.parametrize(('other', 'messages'), [
+    ('<frame name="g"><pose>3 0 0 0 0 0</pose></frame>', 1),
+    ('<frame name="g"><pose>1 0 0 0 0 0</pose></frame>', 0),
+    ('<link name="k">{}</link>', 1),
+])
+def test_an_id_in_harmonic_of_another_element_makes_no_frame(other, messages):
+    sensor = '<sensor name="{}" type="imu"><pose>{} 0 0 0 0 0</pose>{}</sensor>'
+    content = sensor.format('s', 1, TAGS['f'] + TAGS['g'])
+    tree = tree_of(model_file(
+        f'<link name="l">{content}</link>' + other.format(sensor.format('t', 3, TAGS['g']))))
+    assert tree.frame_ids.count('g') == 1
+    assert pose_of(tree, 'f')[0] == 1.0
+    assert [each.message[:57] for each in tree.warnings] == [
+        'the frame id in Gazebo Harmonic "g" of sensor "m::l::s" is'[:57]] * messages
+
+
+def test_an_id_in_harmonic_that_is_that_of_the_optical_frame_is_this_frame():
+    tree = tree_of(link_with('<sensor name="s" type="camera"><frame_id>f</frame_id>'
+                             '<gz_frame_id>f_optical</gz_frame_id></sensor>'))
+    assert tree.frame_ids == ('m', 'l', 'f', 'f_optical')
+    assert pose_of(tree, 'f_optical')[3] == -0.5
 
 
 @pytest.mark.parametrize('children', [
