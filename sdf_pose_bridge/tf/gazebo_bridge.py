@@ -123,7 +123,9 @@ def node_parameters(
     joints = {each.pattern for each in topics if each.topic.group == 'joints'}
     sources = sorted(
         (each for each in topics if each.places_model),
-        key=lambda each: (GROUPS.index(each.topic.group), each.topic.is_of_wheels))
+        # Before Harmonic 8.10, PosePublisher needs this option for the pose of its own model, too.
+        key=lambda each: (each.topic.is_of_wheels, each.topic.group == 'poses' and not is_true(
+            each.owners[0].values, 'publish_nested_model_pose'), GROUPS.index(each.topic.group)))
     followed = {each.owners[0].free_model: each for each in reversed(sources)}
     # A pattern must not name the second source of another model.
     others = {each.pattern for each in sources
