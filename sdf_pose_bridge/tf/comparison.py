@@ -9,11 +9,9 @@ masses are not compared.
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Callable, Hashable, Iterable, Sequence
+from collections.abc import Hashable, Iterable, Sequence
 import enum
-from functools import partial
-from typing import NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -100,10 +98,7 @@ def differences_of_scenes(
     old_frames, new_frames = _frames(old), _frames(new)
     old_of_new = {index: before for index, before in old_of_all.items()
                   if before in old_frames and index in new_frames}
-    remaining = set(old_of_new.values())
-    differences = [
-        Difference(Change.REMOVED, Kind(old.kinds[index]), old.names[index], old.names[index])
-        for index in old_frames if index not in remaining]
+    remaining = {*old_of_new.values()}
     movements = {
         index: movement for index, before in old_of_new.items()
         if max(movement := distance_and_angle(old_poses[before], new_poses[index])) > tolerance}
@@ -115,6 +110,9 @@ def differences_of_scenes(
                 relative_pose(new_poses[carrier], new_poses[index]))) <= tolerance:
             carriers[index] = carrier
     first_moved = ends_from_pointers(carriers).tolist()
+    differences = [
+        Difference(Change.REMOVED, Kind(old.kinds[index]), old.names[index], old.names[index])
+        for index in old_frames if index not in remaining]
     old_facts, new_facts = _facts(old, old.names), _facts(new, [
         old.names[old_of_all[index]] if index in old_of_all else name
         for index, name in enumerate(new.names)])
@@ -125,8 +123,7 @@ def differences_of_scenes(
             continue
         moved = Difference(Change.MOVED, kind, name, old.names[before])
         if new.own_name(index) != old.own_name(before):
-            differences.append(moved._replace(
-                change=Change.RENAMED, old=old.names[before], new=name))
+            differences.append(moved._replace(change=Change.RENAMED, old=moved.old_name, new=name))
         if index in movements:
             first, (distance_m, angle_rad) = first_moved[index], movements[index]
             differences.append(moved._replace(
@@ -157,7 +154,7 @@ def _frames(scene: Scene) -> dict[int, None]:
 
 
 def _old_of_new(old: Scene, new: Scene) -> dict[int, int]:
-    """Return the old element of each new one that is not added, roots included."""
+    """Return the old element of each new one that is not added; the first roots are the same."""
     def name(scene: Scene, index: int) -> Hashable:
         return scene.kinds.item(index), scene.own_name(index)
 
@@ -166,33 +163,29 @@ def _old_of_new(old: Scene, new: Scene) -> dict[int, int]:
         is_only = scene.kinds[scene.parents[index]] == Kind.ROOT
         return scene.kinds.item(index), is_only or scene.poses[index].tobytes()
 
+    def by_key(scene: Scene, indices: Iterable[int], key: Any) -> dict[Hashable, list[int]]:
+        groups: dict[Hashable, list[int]] = {}
+        for index in indices:
+            groups.setdefault(key(scene, index), []).append(index)
+        return groups
+
     old_children, new_children = (
-        _grouped(range(len(scene.names)), scene.parents.item) for scene in (old, new))
-    found: dict[int, int] = {}
-    # The roots are the children of -1.
-    waiting = [(-1, -1)]
+        by_key(scene, range(len(scene.names)), lambda scene, index: scene.parents.item(index))
+        for scene in (old, new))
+    waiting = [*zip(new_children[-1], old_children[-1], strict=False)]
+    found = dict(waiting)
     while waiting:
         index, before = waiting.pop()
-        come, gone = new_children[index], old_children[before]
-        for key in (name, place) if index >= 0 else (name,):
-            others = _grouped(gone, partial(key, old))
-            pairs = {there[0]: others[each][0]
-                     for each, there in _grouped(come, partial(key, new)).items()
-                     if len(there) == len(others[each]) == 1}
+        come, gone = new_children.get(index, []), old_children.get(before, [])
+        for key in (name, place):
+            others = by_key(old, gone, key)
+            pairs = {there[0]: others[each][0] for each, there in by_key(new, come, key).items()
+                     if len(there) == len(others.get(each, ())) == 1}
             found.update(pairs)
             waiting += pairs.items()
-            come, gone = ([each for each in group if each not in used] for group, used in (
-                (come, {*pairs}), (gone, {*pairs.values()})))
+            come = [each for each in come if each not in pairs]
+            gone = [each for each in gone if each not in {*pairs.values()}]
     return found
-
-
-def _grouped(
-    indices: Iterable[int], key: Callable[[int], Hashable],
-) -> defaultdict[Hashable, list[int]]:
-    groups = defaultdict[Hashable, list[int]](list)
-    for index in indices:
-        groups[key(index)].append(index)
-    return groups
 
 
 def _facts(scene: Scene, names: Sequence[str]) -> list[_Facts]:

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from sdf_texts import joint, LINK, model_file, posed, TWO_LINKS, world_file
+from sdf_texts import joint, LINK, model_file, posed, TWO_LINKS
 
 from sdf_pose_bridge import load_text, SdfError, UnknownFrameError
 from sdf_pose_bridge.tf.comparison import Change, differences_of_scenes
@@ -97,11 +97,17 @@ def test_what_is_added_or_removed_is_not_renamed(old, new, changes):
             for each in differences_of_scenes(*scenes)] == changes
 
 
-def test_worlds_are_told_apart():
-    text = world_file('<frame name="f"><pose>0 0 1 0 0 0</pose></frame>')
-    scenes = load_text(text), load_text(text.replace('"w"', '"v"'))
-    assert [each.change.value for each in differences_of_scenes(*scenes)] == [
-        'removed', 'added']
+def test_worlds_are_told_apart_by_their_order():
+    # TF has the first one, and its name is in no frame id.
+    first, second = (f'<world name="{name}"><frame name="f"><pose>0 0 {z} 0 0 0</pose></frame>'
+                     '</world>' for name, z in (('v', 1), ('w', 2)))
+    sdf = '<sdf version="1.6">{}</sdf>'.format
+    old = load_text(sdf(first + second))
+    assert differences_of_scenes(old, load_text(sdf(first.replace('"v"', '"u"') + second))) == []
+    assert [each.change.value for each in differences_of_scenes(
+        old, load_text(sdf(second + first)))] == ['moved', 'moved']
+    assert [each.change.value for each in differences_of_scenes(
+        old, load_text(sdf(first)))] == ['removed']
 
 
 def test_an_unknown_frame_is_refused():
