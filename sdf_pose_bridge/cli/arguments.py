@@ -62,6 +62,15 @@ def add_unit_arguments(parser: argparse.ArgumentParser) -> None:
         help='lengths in millimetres, not metres')
 
 
+def add_digits_argument(parser: argparse.ArgumentParser) -> None:
+    """Add the argument ``--digits`` of tables of poses."""
+    parser.add_argument(
+        '--digits', metavar='N', type=argument_type(
+            int, 'must be a number from 0 to 15', lambda count: 0 <= count <= 15),
+        help='print N digits behind the point; by default those that the smallest length needs, '
+             'if the table is not wider than 80 columns')
+
+
 def add_format_argument(parser: argparse.ArgumentParser, *formats: str) -> None:
     """Add the argument ``--format`` with formats besides ``text``."""
     choices = ('text', *formats)

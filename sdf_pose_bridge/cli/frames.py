@@ -7,6 +7,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable, Iterable, Mapping, Sequence
 import csv
+from itertools import count
 import shutil
 import sys
 from typing import Any, NamedTuple, TypeAlias
@@ -14,11 +15,16 @@ from typing import Any, NamedTuple, TypeAlias
 from sdf_pose_bridge.cli.loading import load_file
 from sdf_pose_bridge.cli.printing import BOLD, DIM, print_json, print_problems, styled
 from sdf_pose_bridge.errors import SdfError, SdfWarning
+from sdf_pose_bridge.geometry.poses import TOLERANCE
 from sdf_pose_bridge.geometry.units import Units
 from sdf_pose_bridge.names import printable, shortened
 from sdf_pose_bridge.scene.scene import Scene
 
-_WIDEST_NAME, _NARROWEST_NAME = 80, 8
+_WIDEST_NAME, _NARROWEST_NAME, _NARROWEST_COLUMN = 80, 6, 12
+_WIDEST_WITH_DIGITS = 80
+"""Largest width of a table with more digits than usual."""
+_ROUNDING = 0.05
+"""Largest error of the smallest length, relative to it."""
 _SHORT_KINDS = {'optical frame': 'optical', 'particle_emitter': 'emitter'}
 BELOW = str.maketrans('├└`-', '│   ')
 """Translates the branches of a line into those below it."""
@@ -55,34 +61,68 @@ def print_table(labels: Sequence[str], rows: Sequence[TableRow], remark: str = '
     :param labels: the labels of the columns behind the kinds, such as x, y and z.
     :param remark: the label of the remarks, if there are any.
     """
-    rows = [
-        row._replace(
-            name=printable(row.name[-2 * _WIDEST_NAME:]),
-            kind=_SHORT_KINDS.get(row.kind, row.kind), branches=_branches(row.branches),
-            values=row.values or ('',) * len(labels))
-        for row in (TableRow('frame', 'kind', labels, remark=remark), *rows)]
-    widths = [max(map(len, column)) for column in zip(*(row.values for row in rows), strict=True)]
-    kind_width = max(len(row.kind) for row in rows)
-    columns = shutil.get_terminal_size().columns if sys.stdout.isatty() else 2 * _WIDEST_NAME
-    width = min(
-        max(len(row.branches + row.name) for row in rows), _WIDEST_NAME,
-        max(columns - kind_width - sum(widths) - len(widths) - 3, _NARROWEST_NAME))
+    rows, widths, kind_width, width = _laid_out(labels, rows, remark)
+    columns = _columns()
+    room = columns - kind_width - sum(widths) - len(widths) - 1
+    if _narrowest(rows) > room:
+        rows = [row._replace(branches=row.branches[::2]) for row in rows]
+    if _narrowest(rows) > room:
+        # Names and branches tell more than kinds.
+        room, kind_width = room + kind_width, 0
+    width = min(width, _WIDEST_NAME, max(room, _NARROWEST_COLUMN))
+    taken: dict[str, str] = {}
     for name, kind, values, note, branches, is_bold, remark in rows:
-        room = width - min(len(name), _NARROWEST_NAME)
-        branches = branches[max(len(branches) - room, 0):]
+        branches = branches[max(len(branches) - width + min(len(name), _NARROWEST_NAME), 0):]
         longest = width - len(branches)
-        # The end of a scoped name tells most.
-        name = name if len(name) <= longest else f'...{name[3 - longest:]}'
-        name = f'{name:{longest}}'
+        name = f'{_fitted(name, longest, taken):{longest}}'
+        kind = f'{kind:{kind_width}}'[:kind_width]
+        text = f'{" ".join(map(str.rjust, values, widths))}  {printable(remark)}'.rstrip()
+        if not kind and not text:
+            name = name.rstrip()
         print(
             styled(branches, DIM, sys.stdout)
             + (styled(name, BOLD, sys.stdout) if is_bold else name)
-            + f'  {styled(f"{kind:{kind_width}}", _COLORS.get(kind, ""), sys.stdout)}  '
-            f'{" ".join(map(str.rjust, values, widths))}  {printable(remark)}'.rstrip())
+            + (f'  {styled(kind, _COLORS.get(kind.rstrip(), ""), sys.stdout)}{text}'
+               if text else f'  {kind}').rstrip())
         if note:
             below = branches.translate(BELOW) + '  '
             note = shortened(printable(note), columns - len(below))
             print(styled(below + note, DIM, sys.stdout))
+
+
+def _laid_out(
+    labels: Sequence[str], rows: Sequence[TableRow], remark: str = '',
+) -> tuple[list[TableRow], list[int], int, int]:
+    """Return all rows, the widths of values, and those of the kinds and of the names."""
+    found = [
+        row._replace(
+            name=printable(row.name[-2 * _WIDEST_NAME:]),
+            kind=f'{_SHORT_KINDS.get(row.kind, row.kind)}  ', branches=_branches(row.branches),
+            values=row.values or ('',) * len(labels))
+        for row in (TableRow('frame', 'kind', labels, remark=remark), *rows)]
+    widths = [max(map(len, column)) for column in zip(*(row.values for row in found), strict=True)]
+    return (found, widths, max(len(row.kind) for row in found),
+            max(len(row.branches + row.name) for row in found))
+
+
+def _columns() -> int:
+    return shutil.get_terminal_size().columns if sys.stdout.isatty() else 2 * _WIDEST_NAME
+
+
+def _narrowest(rows: Sequence[TableRow]) -> int:
+    """Return the narrowest column of names in which names tell something."""
+    return max(_NARROWEST_COLUMN, *(
+        len(row.branches) + min(len(row.name), _NARROWEST_NAME) for row in rows))
+
+
+def _fitted(name: str, longest: int, taken: dict[str, str]) -> str:
+    """Shorten a name in the middle, so that no other name of the table has the same text."""
+    if len(name) <= longest:
+        return taken.setdefault(name, name)
+    # The end of a scoped name tells most.
+    heads = sorted(range(longest - 2), key=lambda head: abs(head - longest // 3))
+    texts = [f'{name[:head]}..{name[len(name) - longest + head + 2:]}' for head in heads]
+    return next((text for text in texts if taken.setdefault(text, name) == name), texts[0])
 
 
 def _branches(branches: str) -> str:
@@ -136,10 +176,31 @@ def print_frames(
                 print(f'sdf_pose {options.command}: no whole name in {printable(path)} matches '
                       f'"{printable(pattern)}"', file=sys.stderr)
                 continue
-            print_table(units.labels, [
-                row._replace(values=units.texts(record['pose'], fewer_digits=1))
-                if record['pose'] else row for record, row in frames])
+            print_table(units.labels, _rows_with_poses(frames, units, options.digits))
     return exit_code
+
+
+def _rows_with_poses(
+    frames: Sequence[Frame], units: Units, given_digits: int | None,
+) -> list[TableRow]:
+    """Return rows with poses; where there is room, with the digits of the smallest length."""
+    def rows(length_digits: int, angle_digits: int) -> list[TableRow]:
+        return [row._replace(values=units.texts(record['pose'], (length_digits, angle_digits)))
+                if record['pose'] else row for record, row in frames]
+
+    if given_digits is not None:
+        return rows(given_digits, given_digits)
+    least, angle_digits = units.length.digits - 1, units.angle.digits - 1
+    found = rows(least, angle_digits)
+    lengths = [abs(value) * units.length.factor for record, _ in frames if record['pose']
+               for value in record['pose'][:3] if abs(value) >= TOLERANCE]
+    shortest = min(lengths, default=0.0)
+    needed = next(digits for digits in count(least)
+                  if abs(round(shortest, digits) - shortest) <= _ROUNDING * shortest)
+    _, widths, kind_width, width = _laid_out(units.labels, found)
+    room = min(_columns(), _WIDEST_WITH_DIGITS) - (
+        width + kind_width + sum(widths) + len(widths) + 1)
+    return rows(min(needed, least + max(room // 3, 0)), angle_digits)
 
 
 def print_csv(columns: Sequence[str], records: Iterable[Mapping[str, Any]]) -> None:

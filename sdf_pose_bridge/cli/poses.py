@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sdf_pose_bridge.cli.arguments import (
+    add_digits_argument,
     add_file_arguments,
     add_format_argument,
     add_kinds_argument,
@@ -53,6 +54,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
              'elbow, arm/elbow, wrist_axis2, ball_roll')
     add_kinds_argument(parser, 'print only')
     add_unit_arguments(parser)
+    add_digits_argument(parser)
 
 
 def run(options: argparse.Namespace) -> int:

@@ -13,6 +13,7 @@ import math
 import numpy as np
 
 from sdf_pose_bridge.cli.arguments import (
+    add_digits_argument,
     add_file_arguments,
     add_format_argument,
     add_frame_arguments,
@@ -48,6 +49,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
              'given, with poses in the frames that they are relative to')
     add_frame_arguments(parser)
     add_unit_arguments(parser)
+    add_digits_argument(parser)
     parser.add_argument(
         '--depth', metavar='N', default=math.inf,
         type=argument_type(int, 'is not a number of levels', lambda depth: depth >= 0),

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.poses import Pose, TOLERANCE
 from sdf_pose_bridge.geometry.rotations import Floats, rpy_from_quaternion
 
 LARGEST_ANGLE_RAD = 2.5 * math.pi
@@ -34,11 +34,13 @@ class Unit(NamedTuple):
         """A half turn in this unit of angles."""
         return math.pi * self.factor
 
-    def rounded(self, value: float, *, fewer_digits: int = 0) -> str:
-        """Write a length in metres, or an angle in radians, in this unit."""
-        digits = self.digits - fewer_digits
-        # Adding zero removes negative zeros.
-        return f'{round(value * self.factor, digits) + 0.0:.{digits}f}'
+    def rounded(self, value: float, digits: int | None = None) -> str:
+        """Write a length in metres, or an angle in radians, in this unit; only 0 is a zero."""
+        digits = self.digits if digits is None else digits
+        if abs(value) < TOLERANCE:
+            value = 0.0
+        shown = round(value * self.factor, digits)
+        return f'{shown:.{digits}f}' if shown or not value else f'{value * self.factor:.2g}'
 
 
 METRES, MILLIMETRES = Unit('m', 'metres', 1.0, 4), Unit('mm', 'mm', 1000.0, 1)
@@ -76,16 +78,18 @@ class Units(NamedTuple):
         """The labels of the columns of a table of poses."""
         return f'x {self.length.name}', 'y', 'z', f'roll {self.angle.name}', 'pitch', 'yaw'
 
-    def texts(self, pose: Pose, *, fewer_digits: int = 0) -> list[str]:
+    def texts(
+        self, pose: Pose, digits: tuple[int | None, int | None] = (None, None),
+    ) -> list[str]:
         """
         Write a pose in these units.
 
-        :param fewer_digits: the number of digits to leave out.
+        :param digits: the number of digits of lengths and of angles; None for that of the unit.
         :return: x, y, z, roll, pitch and yaw, rounded.
         """
         values = (*pose[:3], *rpy_from_quaternion(pose[3:]))
-        return [unit.rounded(value, fewer_digits=fewer_digits)
-                for value, unit in zip(values, self.of_pose, strict=True)]
+        return [unit.rounded(value, digits[index // 3])
+                for index, (value, unit) in enumerate(zip(values, self.of_pose, strict=True))]
 
 
 def are_unlikely(rows: Floats, unit: Unit) -> Any:

@@ -9,10 +9,12 @@ import re
 
 from folders import ROOT
 import pytest
+from sdf_texts import element, fixed_joint, LINK, model_file, posed
 
 
 @pytest.mark.parametrize(('columns', 'arguments'), [
-    (80, 'tree {cell}'), (120, 'tree {cell}'), (80, 'tree --scope {cell}'),
+    (60, 'tree {cell}'), (80, 'tree {cell}'), (120, 'tree {cell}'), (80, 'tree --scope {cell}'),
+    (60, 'poses {cell}'),
     (80, 'poses {cell} --radians'), (80, 'poses --mm {cell}'), (80, 'diff {moved} {cell}')])
 def test_lines_are_as_long_as_those_of_the_terminal(on_terminal, files, columns, arguments):
     cell = ROOT / 'examples/work_cell.sdf'
@@ -26,6 +28,54 @@ def test_lines_are_as_long_as_those_of_the_terminal(on_terminal, files, columns,
         if not line.startswith('reading ')]
     assert len(lines) > 2
     assert max(map(len, lines)) <= columns
+
+
+CHAIN = model_file(LINK + ''.join(
+    posed('frame', f'{name}_with_a_name', f'{x} 0 0 0 0 0', before) for name, before, x in (
+        ('a', 'l', 0.0004), ('b', 'a_with_a_name', 1.0014), ('c', 'b_with_a_name', 0.5))))
+
+
+def table_of(text):
+    return re.sub('\x1b\\[[0-9]*m', '', text).splitlines()
+
+
+@pytest.mark.parametrize(('columns', 'x'), [
+    (80, ['0.0000', '0.0004', '1.0018', '1.5018']),
+    (200, ['0.0000', '0.0004', '1.0018', '1.5018']),
+    # There is no room for more digits.
+    (60, ['0.000', '0.0004', '1.002', '1.502'])])
+def test_lengths_have_the_digits_that_the_smallest_one_needs(on_terminal, files, columns, x):
+    (files / 'chain.sdf').write_text(CHAIN)
+    lines = table_of(on_terminal(columns, 'poses', 'chain.sdf', '--kinds', 'link,frame'))
+    assert [line.split()[2] for line in lines[1:]] == x
+
+
+def test_digits_that_are_asked_for(run_main, files):
+    (files / 'chain.sdf').write_text(CHAIN)
+    done = run_main('tree', 'chain.sdf', '--digits', '7')
+    assert ' 0.0004000 ' in done.stdout
+    assert ' 0.0000000\n' in done.stdout
+
+
+def test_guides_stay_in_60_columns_and_names_stay_different(on_terminal, files):
+    names = [f'the_same_beginning_{number}_and_the_same_end' for number in range(9)]
+    (files / 'arm.sdf').write_text(model_file(''.join(
+        element('link', name) + (fixed_joint(f'j{number}', names[number - 1], name)
+                                 if number else '') for number, name in enumerate(names))))
+    lines = table_of(on_terminal(60, 'tree', 'arm.sdf', '--kinds', 'link'))
+    assert max(map(len, lines)) <= 60
+    shown = [line[:18].rstrip() for line in lines[1:]]
+    assert [text.index('t') for text in shown] == [*range(9)]
+    assert {text[text.index('t') - 1] for text in shown[1:]} == {'└'}
+    assert len({text.lstrip('└ ') for text in shown}) == 9
+
+
+def test_shortened_names_differ(on_terminal, files):
+    names = [f'the_same_beginning_{number}_and_the_same_end' for number in range(9)]
+    (files / 'arm.sdf').write_text(model_file(''.join(element('link', each) for each in names)))
+    lines = table_of(on_terminal(60, 'poses', 'arm.sdf', '--kinds', 'link'))
+    assert len({line.split()[0] for line in lines[1:]}) == 9
+    assert max(map(len, lines)) <= 60
 
 
 def rows_of(done):
