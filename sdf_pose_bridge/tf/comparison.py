@@ -183,8 +183,9 @@ def _old_of_new(old: Scene, new: Scene) -> dict[int, int]:
                      if len(there) == len(others.get(each, ())) == 1}
             found.update(pairs)
             waiting += pairs.items()
+            used = {*pairs.values()}
             come = [each for each in come if each not in pairs]
-            gone = [each for each in gone if each not in {*pairs.values()}]
+            gone = [each for each in gone if each not in used]
     return found
 
 
