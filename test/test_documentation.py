@@ -39,7 +39,6 @@ NOT_RUN = {
     'ros2 run tf2_ros': 'needs tf2_ros',
     'ros2 run joint_state_publisher_gui': 'needs joint_state_publisher_gui',
     'ros2 launch': 'launch is not on PyPI; test_launch_files.py runs the files where it is',
-    'gz ': 'needs Gazebo',
     'sdf_pose view examples/work_cell.sdf': 'opens a browser; test_view.py writes the page',
     'FASTDDS_': 'needs a network that loses packets, or a profile of the user',
     'ROS_SUPER_CLIENT': 'the ros2 command line is not on PyPI',

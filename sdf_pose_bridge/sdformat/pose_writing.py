@@ -154,7 +154,7 @@ class PoseText:
         """Change an ``<origin>`` of URDF, or insert one into a joint as :meth:`with_new_pose`."""
         xml = self._elements[element]
         is_new = xml.tag != 'origin'
-        old = [word for name in ('xyz', 'rpy') for word in xml.get(name, '0 0 0').split()]
+        old = [word for name in ('xyz', 'rpy') for word in words_of(xml.get(name, '0 0 0'))]
         numbers = [number_from_word(word)[0] for word in old]
         turn = relative_pose(pose_from_xyz_rpy(numbers[:3], numbers[3:]), pose)
         words = _words_from_pose(
