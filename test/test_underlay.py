@@ -35,24 +35,26 @@ pytestmark = pytest.mark.skipif(sys.platform != 'linux', reason='needs Linux')
 
 
 @pytest.fixture
-def checkout():
+def plain_folder():
+    """A folder with a plain path: tools of ROS, compilers and the linker refuse some TMPDIR."""
+    with tempfile.TemporaryDirectory(dir='/tmp') as folder:
+        yield Path(folder)
+
+
+@pytest.fixture
+def checkout(plain_folder):
     """Return a folder that has the environment's scripts but no environment."""
-    # The tools of ROS do not work in each path that TMPDIR may have.
-    with tempfile.TemporaryDirectory(dir='/tmp') as parent:
-        yield copy_of_scripts(Path(parent, 'checkout'))
-
-
-def copy_of_scripts(folder):
+    folder = plain_folder / 'checkout'
     shutil.copytree(ROOT / 'underlay', folder / 'underlay')
     shutil.copy(ROOT / 'setup.cfg', folder)
     return folder
 
 
 @pytest.fixture
-def tools(tmp_path):
+def tools(plain_folder):
     """Return a folder with the few commands that a shell script needs, to be a whole PATH."""
-    needs.executables_in(tmp_path)
-    folder = tmp_path / 'tools'
+    needs.executables_in(plain_folder)
+    folder = plain_folder / 'tools'
     folder.mkdir()
     for name in SHELL_TOOLS:
         (folder / name).symlink_to(needs.program(name))
@@ -181,14 +183,14 @@ def test_a_shell_with_the_workspace_alone_has_the_command_line(built):
     script = (
         f'. {workspace}/local_setup.bash; type -P sdf_pose; '
         'sdf_pose convert --from rpy --to quaternion 0 0 0')
-    result = completed(['bash', '-c', script], env={'PATH': os.defpath}, cwd='/')
+    result = completed([needs.program('bash'), '-c', script], env={'PATH': os.defpath}, cwd='/')
     assert (result.returncode, result.stderr) == (0, '')
     assert result.stdout.splitlines() == [
         str(workspace / 'sdf_pose_bridge/bin/sdf_pose'), '0.0 0.0 0.0 1.0']
 
 
-def test_the_node_is_started_with_words_for_a_second_shell(built, tmp_path):
-    result = shell(f'{built}; python {ROOT}/underlay/run.py {tmp_path} missing.sdf')
+def test_the_node_is_started_with_words_for_a_second_shell(built):
+    result = shell(f'{built}; python {ROOT}/underlay/run.py . missing.sdf')
     assert result.returncode == 1
     assert f'\n  . {ROOT}/underlay/setup.bash\n' in result.stderr
     assert 'ask_bridge.py topics' in result.stderr or 'ros2 topic list' in result.stderr
@@ -205,14 +207,14 @@ def test_setup_bash_refuses_another_ros_and_an_empty_folder(built, environment, 
     assert words in result.stderr
 
 
-def test_setup_bash_uses_a_given_middleware(built, tmp_path):
-    (tmp_path / 'lib').mkdir()
-    (tmp_path / 'lib/librmw_x.so').touch()
+def test_setup_bash_uses_a_given_middleware(built, plain_folder):
+    (plain_folder / 'lib').mkdir()
+    (plain_folder / 'lib/librmw_x.so').touch()
     result = shell(
         f'{built}; for name in RMW_IMPLEMENTATION LD_PRELOAD AMENT_PREFIX_PATH LD_LIBRARY_PATH; '
-        'do echo ${!name%%:*}; done', RMW='rmw_x', RMW_FOLDER=str(tmp_path))
+        'do echo ${!name%%:*}; done', RMW='rmw_x', RMW_FOLDER=str(plain_folder))
     assert result.stdout.split() == [
-        'rmw_x', f'{tmp_path}/lib/librmw_x.so', str(tmp_path), f'{tmp_path}/lib']
+        'rmw_x', f'{plain_folder}/lib/librmw_x.so', str(plain_folder), f'{plain_folder}/lib']
 
 
 def test_setup_bash_puts_a_given_rclpy_before_the_one_of_ros(built, tmp_path):

@@ -3,6 +3,7 @@
 """The page in a real browser: numbers, the gizmo and the file that they change."""
 
 import html
+import json
 
 import pytest
 from shown_page import (
@@ -64,8 +65,8 @@ def test_fields_are_in_view_beside_the_tree_where_a_frame_is_clicked(sized_page,
         sized_page.wait_for(is_in_window(control(label)))
     sized_page.wait_for(is_in_window("document.querySelector('.rows .selected')"))
     line = 1 + TEXT[:TEXT.index('"slide"')].count('\n')
-    sized_page.wait_for(f"""document.querySelector('.strip').innerText.includes(
-      'in the file {shown.file}:{line} relative_to="arm": no pose')""")
+    text = f'in the file {shown.file}:{line} relative_to="arm": no pose'
+    sized_page.wait_for(f"document.querySelector('.strip').innerText.includes({json.dumps(text)})")
 
 
 def test_frame_is_selected_typed_written_and_cancelled_by_the_keyboard(page, shown):

@@ -3,6 +3,7 @@
 """The page in a real browser: the tree of frames, joints, errors and hostile names."""
 
 import html
+import json
 
 import pytest
 from shown_page import (
@@ -149,4 +150,4 @@ def test_path_of_the_file_is_shown_at_its_name(page, shown):
     title = "[...document.querySelectorAll('div')].findLast(e => e.innerText === 'cell.sdf')"
     x, y = page.run(f"""(box => [box.left + 5, box.top + 5])({title}.getBoundingClientRect())""")
     page.call('Input.dispatchMouseEvent', type='mouseMoved', x=x, y=y)
-    page.wait_for(f"{title}.title === '{shown.file}'")
+    page.wait_for(f'{title}.title === {json.dumps(str(shown.file))}')

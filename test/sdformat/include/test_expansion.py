@@ -17,6 +17,7 @@ from sdf_texts import (
 )
 
 from sdf_pose_bridge import load
+from sdf_pose_bridge.names import shortened
 
 LEAF = """<sdf version="1.9"><model name="leaf"><pose>0 0 1 0 0 0</pose>
 <link name="body"><pose>0 1 0 0 0 0</pose></link></model></sdf>"""
@@ -55,9 +56,8 @@ def test_file_that_a_relative_path_finds_in_two_places_gives_one_warning(write, 
         write(include() + include(content='<name>b</name>')), resource_paths=[tmp_path / 'models'])
     assert 'leaf' in scene.names
     (warning,) = scene.warnings
-    assert warning.message == (
-        f'"leaf.sdf" is read from "{tmp_path}/leaf.sdf"; there is another one, '
-        f'"{tmp_path}/models/leaf.sdf"')
+    path, other = (shortened(f'{tmp_path}/{name}leaf.sdf') for name in ('', 'models/'))
+    assert warning.message == f'"leaf.sdf" is read from "{path}"; there is another one, "{other}"'
 
 
 # Wrong includes
