@@ -136,7 +136,7 @@ setup(
     python_requires='>=3.10',
     # Each with the oldest release that the tests pass with, and below the first that they do not
     # know. docs/releasing.md says how this is tested.
-    install_requires=['numpy>=1.22,<3', 'lxml>=4.8,<7'],
+    install_requires=['numpy>=1.26.4,<3', 'lxml>=5.2.1,<7'],
     # By the first colcon knows that it is pytest that runs the tests.
     extras_require={
         'test': ['pytest', 'hypothesis', 'mpmath'],

@@ -10,9 +10,11 @@ import sys
 
 from deadline import DEADLINE_S
 from folders import ROOT
+from processes import end_with_parent
 
 completed = partial(
-    subprocess.run, capture_output=True, text=True, timeout=DEADLINE_S, check=False)
+    subprocess.run, capture_output=True, text=True, timeout=DEADLINE_S, check=False,
+    preexec_fn=end_with_parent)
 """Runs a command to its end: ``completed(command, **options)`` returns what it has printed."""
 
 AS_MODULE = [sys.executable, '-m', 'sdf_pose_bridge']

@@ -11,9 +11,10 @@ _PR_SET_PDEATHSIG = 1
 _LIBC = ctypes.CDLL(None)
 
 
-def _end_with_parent():
+def end_with_parent():
+    """Have this process, which is to run a program, get SIGTERM when its parent ends."""
     _LIBC.prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
 
 
-started = partial(subprocess.Popen, preexec_fn=_end_with_parent)
-"""Starts a process, which gets SIGTERM when this one ends, even where this one is killed."""
+started = partial(subprocess.Popen, preexec_fn=end_with_parent)
+"""Starts a process that ends with this one, even where this one is killed."""

@@ -183,7 +183,7 @@ def _follow(pages: Any, watcher: FileWatcher, load: Callable[[], Scene]) -> None
 
 def _write(html: str, path: Path, inputs: Iterable[str]) -> None:
     try:
-        content = _picture(html) if path.suffix.lower() == '.png' else html.encode()
+        content = _picture(html, path) if path.suffix.lower() == '.png' else html.encode()
     except OSError as error:
         msg = f'cannot write {path}: {error}'
         raise CommandError(msg) from error
@@ -201,15 +201,17 @@ def _scene(
             FOR_FILES, partial(scene_from_file, shapes=True, texts=texts), path, options)
 
 
-def _picture(page: str) -> bytes:
+def _picture(page: str, output: Path) -> bytes:
     """Draw a page by a browser; raise an OSError if there is none, or it does not draw."""
     browser = next(filter(None, map(shutil.which, BROWSERS)), None)
     if browser is None:
         msg = 'a picture needs Chrome or Chromium; a file that ends with .html does not'
         raise FileNotFoundError(msg)
-    # Other processes of the browser may still write after the first one has ended.
+    # A browser of snap has a /tmp of its own, and does not see hidden folders. Other processes of
+    # the browser may still write after the first one has ended.
     with tempfile.TemporaryDirectory(
-            prefix='sdf_pose_view_', ignore_cleanup_errors=True) as folder:
+            prefix='sdf_pose_view_', dir=output.absolute().parent,
+            ignore_cleanup_errors=True) as folder:
         source, picture = Path(folder, 'page.html'), Path(folder, 'picture.png')
         source.write_text(page + _ONLY_THE_SCENE, encoding='utf-8')
         command = [browser, *_BROWSER_OPTIONS, f'--user-data-dir={folder}',
@@ -218,5 +220,6 @@ def _picture(page: str) -> bytes:
             subprocess.run(command, capture_output=True, check=False, timeout=_MOST_SECONDS)
         if picture.exists():
             return picture.read_bytes()
-    msg = f'{browser} did not draw the page'
+    msg = (f'{browser} wrote no picture into that folder; a browser of snap, as on Ubuntu, writes '
+           'only below the home folder, and into no folder whose name begins with "."')
     raise ChildProcessError(msg)

@@ -102,7 +102,6 @@ def result_from_executor(node: Node, function: Callable[[], _Result]) -> _Result
 
     :raises Exception: any exception of the function.
     """
-    assert node.executor is not None
     return result_from_thread(node.executor.create_task, function)
 
 

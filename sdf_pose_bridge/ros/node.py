@@ -329,9 +329,9 @@ class SdfPoseBridge:
 
     def _end_joint_states(self) -> None:
         # The executor does this, so that no look-up waits for the thread after its end.
-        assert self._joint_states is not None
-        self._joint_states.end()
-        self._joint_states = None
+        if self._joint_states is not None:
+            self._joint_states.end()
+            self._joint_states = None
 
     def _replace(self, loaded: LoadedScene, frames: PublishedFrames) -> None:
         """Publish prepared frames, and whatever else belongs to the scene if that is new."""

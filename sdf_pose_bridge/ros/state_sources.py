@@ -79,7 +79,6 @@ class StateSources:
     def close(self, topics: Sequence[StateTopic]) -> None:
         """Have the executor destroy subscriptions; any thread may call this."""
         for topic in topics:
-            assert self._node.executor is not None
             self._node.executor.create_task(self._node.destroy_subscription, topic.subscription)
 
     def end(self) -> None:

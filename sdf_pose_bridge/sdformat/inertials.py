@@ -114,8 +114,7 @@ def inertial_from_element(
     is_automatic = boolean_from_text(attribute_of(xml, 'auto'))
     if not (is_automatic or reads_masses):
         return None
-    link = xml.getparent()
-    assert link is not None
+    link = next(xml.iterancestors())
     if is_automatic:
         return _automatic_inertial(xml, link, sources)
     # By default the moments are those of the unit matrix, as in libsdformat.

@@ -184,8 +184,7 @@ class PoseText:
 
     def _step(self, element: int) -> bytes:
         """Return the indentation of an element relative to its parent; if none, two spaces."""
-        parent = self._elements[element].getparent()
-        assert parent is not None
+        parent = next(self._elements[element].iterancestors())
         own, outer = (
             line[:len(line) - len(line.lstrip(b' \t'))]
             for each in (element, self._elements.index(parent))
@@ -217,8 +216,7 @@ class PoseText:
         words: list[re.Match[bytes]] = []
         if not self._is_closed(end):
             text = _TEXT_AFTER_COMMENTS.match(self._text, end + 1)
-            assert text is not None
-            words = list(_WORD.finditer(self._text, *text.span(1)))
+            words = list(_WORD.finditer(self._text, *text.span(1))) if text else []
         if [word[0].decode() for word in words] != words_of(text_of(self._elements[element])):
             msg = 'the numbers of the pose are not written as plain text'
             raise PoseNotSetError(msg, self._place(element))

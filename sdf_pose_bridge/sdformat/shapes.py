@@ -105,7 +105,8 @@ class Shape(NamedTuple):
     def surface(self) -> Surface:
         """Its surface, if :attr:`reason_without_surface` is empty."""
         make = SHAPE_TYPES[self.type].surface
-        assert make is not None
+        if make is None:
+            raise ValueError(self.reason_without_surface)
         points_m, faces = make(*self.sizes_m)
         return Surface(_rotated_to_normal(points_m, self.normal), faces)
 

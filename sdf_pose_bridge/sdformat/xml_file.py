@@ -247,7 +247,8 @@ def _parsed(text: bytes, path: str) -> XmlElement:
         # libxml2 reports a missing end behind the last line break.
         last_line = text.count(b'\n') + (not text.endswith(b'\n'))
         raise FileReadError(msg, Place(path, min(errors[0].line, last_line)))
-    assert root is not None
+    if root is None:  # lxml does not always report that there is too little memory
+        raise MemoryError
     if len(parser.error_log) >= _MOST_ERRORS:
         _check_with_expat(text, path)
     return root

@@ -3,6 +3,7 @@
 """``sdf_pose view``: pages, and libraries that are not installed."""
 
 from importlib.metadata import version
+import os
 import re
 import socket
 import sys
@@ -12,6 +13,7 @@ import webbrowser
 from command_line import completed
 from folders import ROOT
 import mesh_texts
+import needs
 import pytest
 
 MESH = """<sdf version="1.9"><model name="m"><link name="l"><visual name="v"><geometry>
@@ -63,6 +65,33 @@ def test_viser_or_a_browser_that_cannot_be_started_is_an_error_of_one_line(
         refused, monkeypatch, name, output, reason):
     monkeypatch.setattr(name, lambda *_, **__: None)
     assert reason in refused('view', 'good.sdf', '-o', output)
+
+
+# It reaches what a browser of snap does.
+CONFINED = """#!/bin/sh
+for word; do case $word in --screenshot=*) picture=${word#*=};; esac; done
+case $picture in
+  "$HOME"/.* | "$HOME"/*/.*) exit 1;;
+  "$HOME"/*) cp "$(dirname "$picture")/page.html" "$picture";;
+esac
+"""
+
+
+@pytest.mark.parametrize(('folder', 'is_reached'), [
+    ('home/pictures', True), ('home/.hidden', False), ('elsewhere', False)])
+def test_picture_by_a_browser_that_does_not_reach_all_folders(
+        run_main, monkeypatch, tmp_path, folder, is_reached):
+    needs.executables_in(tmp_path)
+    program, output = tmp_path / 'chromium', tmp_path / folder / 'page.png'
+    output.parent.mkdir(parents=True)
+    program.write_text(CONFINED)
+    program.chmod(0o755)
+    monkeypatch.setenv('PATH', f'{tmp_path}:{os.defpath}')
+    monkeypatch.setenv('HOME', str(tmp_path / 'home'))
+    done = run_main('view', 'good.sdf', '-o', str(output))
+    assert list(output.parent.iterdir()) == ([output] if is_reached else [])
+    reason = f'cannot write {output}: {program} wrote no picture into that folder; a browser of '
+    assert (done.returncode, reason in done.stderr) == (int(not is_reached), not is_reached)
 
 
 def test_page_has_a_title_and_needs_no_network(run_main, files):

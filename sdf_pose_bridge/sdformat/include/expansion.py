@@ -264,8 +264,7 @@ class IncludeExpansion:
         merge(include, top, self._sources, model_by_itself)
 
     def _insert(self, include: XmlElement, top: XmlElement) -> None:
-        parent = include.getparent()
-        assert parent is not None
+        parent = next(include.iterancestors())
         definition = definition_in_tree(parent)
         if definition is None or top.tag not in definition.children:
             msg = (f'the included {written_tag(top)} is left out; a <{written_tag(parent)}> '

@@ -70,8 +70,7 @@ def merge(
 
     :param model: the included element, with the parts that the include overrides.
     """
-    parent = include.getparent()
-    assert parent is not None
+    parent = next(include.iterancestors())
     if model.tag != 'model' or parent.tag not in ('model', 'world'):
         msg = (f'merge="true" on the include of {described(model)}: only a model can be merged, '
                'into a model or a world')
