@@ -22,10 +22,10 @@ OPTIONS = (
     '--disable-background-networking', '--disable-component-update', '--disable-sync',
     '--webgl-antialiasing-mode=none', '--remote-debugging-port=0')
 FEW_FRAMES = """(draw => {
-  window.requestAnimationFrame = action => setTimeout(() => draw(action), 100);
+  window.requestAnimationFrame = action => setTimeout(() => draw(action), 300);
   window.cancelAnimationFrame = clearTimeout;
 })(window.requestAnimationFrame)"""
-"""Ten frames a second at most: without a graphics card, more would take a whole core."""
+"""Three frames a second at most: without a graphics card, more would take a whole core."""
 
 
 class Tab:
@@ -78,8 +78,9 @@ class Tab:
             lambda: self.run(f'Boolean({script})'), lambda: time.sleep(0.05), lambda: script)
 
     def size(self, width, height):
+        """Set the size of the window in pixels of CSS; few pixels are drawn of each."""
         self.call('Emulation.setDeviceMetricsOverride', width=width, height=height,
-                  deviceScaleFactor=1, mobile=False)
+                  deviceScaleFactor=0.25, mobile=False)
 
     def keys(self, *keys):
         """Press and release keys: characters, or keys by their names."""

@@ -50,6 +50,21 @@ def pytest_xdist_auto_num_workers():
     return min(3 * len(os.sched_getaffinity(0)), 16)
 
 
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    """Have one process run all tests of the page, so that one browser is started for them."""
+    if config.getoption('dist') != 'loadfile':
+        return None
+    from xdist.scheduler import LoadFileScheduling
+
+    class Scheduling(LoadFileScheduling):
+        def _split_scope(self, nodeid):
+            file = super()._split_scope(nodeid)
+            return 'page' if 'cli/page/' in file else file
+
+    return Scheduling(config, log)
+
+
 def pytest_collection_modifyitems(items):
     """Begin with the tests that take longest, so that no process has them last."""
     longest = ('cli/page', 'sdformat/test_limits.py', 'integration')

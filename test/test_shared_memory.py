@@ -12,12 +12,12 @@ import pytest
 from ros_domain import environment_with_domain, needs_fast_dds
 from shared_memory import remove_dead_segments, remove_incomplete_ports
 
-# Port 7000 is that of all domains.
+# The ports from 7000 are those of all domains.
 RUNNING = """
 import re, signal, rclpy
 rclpy.init()
 node = rclpy.create_node('killed')
-print(*set(re.findall('/dev/shm/fast(?!.*_port7000).*', open('/proc/self/maps').read())))
+print(*set(re.findall('/dev/shm/fast(?!.*_port70).*', open('/proc/self/maps').read())))
 signal.pause()
 """
 

@@ -92,7 +92,7 @@ def test_part_of_a_mesh_cannot_be_named(tmp_path):
     urdf = urdf_of(link_with(part('visual', mesh)), str(tmp_path / 'robot.sdf'))
     assert 'all of the mesh "a.dae" is meant in URDF instead of its part "hand"' in str(
         urdf.warnings[0])
-    assert f'filename="file://{tmp_path}/a.dae"' in urdf.text
+    assert f'filename="{(tmp_path / "a.dae").as_uri()}"' in urdf.text
 
 
 # Links

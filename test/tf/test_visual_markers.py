@@ -120,7 +120,7 @@ def test_mesh_beside_the_file_is_named_by_its_path(tmp_path, monkeypatch, is_rel
         visual(MESH.format('a.stl', '<scale>1 2 -3</scale>')),
         file='m.sdf' if is_relative else folder / 'm.sdf')
     assert (marker.type, marker.scale) == ('MESH_RESOURCE', (1, 2, -3))
-    assert marker.mesh_resource == f'file://{tmp_path}/my%20robot%20%231/a.stl'
+    assert marker.mesh_resource == (folder / 'a.stl').as_uri()
 
 
 def test_part_of_a_mesh_is_shown_whole_with_a_warning():

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""A page that the tests of a module use one after the other."""
+"""A page that tests use one after the other."""
 
 from types import SimpleNamespace
 
@@ -15,7 +15,7 @@ from shown_page import (
 )
 
 
-@pytest.fixture(scope='module')
+@pytest.fixture(scope='session')
 def shown(tmp_path_factory):
     """A file that ``view`` shows, and a browser that shows its page."""
     folder = tmp_path_factory.mktemp('page')
