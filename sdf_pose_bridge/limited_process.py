@@ -25,7 +25,7 @@ import time
 import traceback
 from typing import BinaryIO, Generic, NoReturn, TypeVar
 
-from sdf_pose_bridge.process_limits import Allowance, limited, LimitExceededError
+from sdf_pose_bridge.process_limits import Allowance, limited, LimitExceededError, open_streams
 
 WAITING_S = 50.0
 """Elapsed time in s of a call beyond its processor time, for disks and other processes."""
@@ -59,6 +59,7 @@ class LimitedProcess:
     """
 
     def __init__(self, prepare: Callable[[], None] = lambda: None) -> None:
+        open_streams()
         self._calls, calls = socket.socketpair()
         self._calls.setblocking(False)
         # These signals are for this process, which ends the other ones.
@@ -121,7 +122,8 @@ class LimitedProcess:
         pid, self._pid = self._pid, 0
         if pid:
             os.kill(pid, signal.SIGKILL)
-            os.waitpid(pid, 0)
+            with contextlib.suppress(ChildProcessError):  # if SIGCHLD is ignored
+                os.waitpid(pid, 0)
             self._calls.close()
 
 
@@ -225,6 +227,10 @@ def _serve(calls: socket.socket, prepare: Callable[[], None]) -> NoReturn:
     """Fork for each call that comes, and report its end, until no more can come."""
     try:
         _end_with_parent()
+        # Others may have been ignored or blocked when this program was started.
+        for number in (signal.SIGCHLD, signal.SIGXCPU):
+            signal.signal(number, signal.SIG_DFL)
+        signal.pthread_sigmask(signal.SIG_SETMASK, [signal.SIGINT, signal.SIGTERM])
         prepare()
         # To search for garbage would copy the memory that the processes share.
         gc.freeze()

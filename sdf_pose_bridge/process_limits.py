@@ -13,7 +13,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 import math
+import os
 import resource
+import sys
 import time
 from typing import NamedTuple
 
@@ -80,6 +82,15 @@ class _Limits:
         self._reserve.clear()
         for kind, limits in self._before.items():
             resource.setrlimit(kind, limits)
+
+
+def open_streams() -> None:
+    """Open closed standard streams: input is empty, and output fails, as with a full disk."""
+    # Otherwise, other files would get their numbers.
+    for name, mode, access in (
+            ('stdin', 'r', os.O_RDONLY), ('stdout', 'w', os.O_RDONLY), ('stderr', 'w', os.O_RDWR)):
+        if getattr(sys, name) is None:
+            setattr(sys, name, os.fdopen(os.open(os.devnull, access), mode))
 
 
 _LIMITS: ContextVar[_Limits | None] = ContextVar('limits', default=None)

@@ -3,6 +3,7 @@
 """The command line as its users start it."""
 
 from functools import partial
+from itertools import combinations
 import os
 from pathlib import Path
 import subprocess
@@ -41,3 +42,12 @@ ENVIRONMENT = {
     'PATH': os.defpath,
     'PYTHONPATH': str(ROOT) if COMMAND is AS_MODULE else os.environ.get('PYTHONPATH', '')}
 """Without what the user's shell may have set for the program."""
+
+REDIRECTIONS = ('<&-', '>&-', '2>&-')
+CLOSED = [each for count in (1, 2, 3) for each in combinations(REDIRECTIONS, count)]
+"""The standard streams that a parent may close, as redirections of a shell."""
+
+
+def with_closed_streams(redirections, *command):
+    """Return a command that closes streams and ignores SIGCHLD before it runs another one."""
+    return ['sh', '-c', f'trap "" CHLD; exec "$@" {" ".join(redirections)}', 'sh', *command]

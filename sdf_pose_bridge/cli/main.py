@@ -29,7 +29,7 @@ from sdf_pose_bridge.cli.printing import (
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.formats import PoseFormatError
 from sdf_pose_bridge.names import hint_from_names, NameIndex
-from sdf_pose_bridge.process_limits import FOR_FILES, limited, LimitExceededError
+from sdf_pose_bridge.process_limits import FOR_FILES, limited, LimitExceededError, open_streams
 
 _NEGATIVE_NUMBER = re.compile(r'^-(\.?\d|inf|nan)', re.IGNORECASE)
 _INVALID_CHOICE = re.compile(r"invalid choice: '(.*)' \(choose from (.*)\)")
@@ -45,9 +45,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     parser = new_parser()
     options = parser.parse_args(arguments)
-    if sys.stdout is None:
-        # The caller has closed it. Printing must fail, as with a full disk.
-        sys.stdout = os.fdopen(os.open(os.devnull, os.O_RDONLY), 'w')
+    open_streams()
     if isinstance(sys.stdout, io.TextIOWrapper):
         # A character that the terminal does not have must not end the command.
         sys.stdout.reconfigure(errors='backslashreplace')

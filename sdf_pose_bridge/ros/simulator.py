@@ -36,9 +36,6 @@ LONGEST_CALL_S = 5.0
 UNFILTERED_PERIOD_S = 60.0
 """Time before the next call if the simulator answers with more entities than it is asked for."""
 
-MOST_EXCESSES = 2
-"""Number of such answers after which it is not called again: each may block the executor."""
-
 MOST_CHARACTERS_OF_FILTER = 1_000_000
 """Largest length of a filter; for more names all entities are asked for."""
 
@@ -186,7 +183,7 @@ class Simulator(StateSource):
             self._excesses += is_too_much
             if not is_too_much:
                 period_s, when = self._period_s(names), ''
-            elif self._excesses < MOST_EXCESSES:
+            elif self._excesses < 2:  # each answer may block the executor
                 period_s = UNFILTERED_PERIOD_S
                 when = f'the next call is in {UNFILTERED_PERIOD_S:g} s'
             else:

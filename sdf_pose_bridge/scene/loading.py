@@ -141,6 +141,10 @@ def _scene(
         model_by_itself=lambda root: _model_by_itself(root, sources)).expand(document)
     elements = elements_from_tree(document.root, sources, shapes=shapes, plugins=plugins)
     graph = frame_graph_from_elements(elements, sources.problems)
+    if graph.names:
+        longest = elements.place(graph.names.index(max(graph.names, key=len)))
+        characters = sum(map(len, graph.names)) - 64 * len(graph.names)
+        sources.usage.check('characters', characters, longest)
     sources.problems.raise_errors()
     return scene_from_graph(
         document.path, elements, graph, sources.problems, document.urdf_root)

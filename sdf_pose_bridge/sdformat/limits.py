@@ -26,6 +26,8 @@ class Limits(NamedTuple):
     copied_elements: int = 400_000
     """XML elements that includes and their parameters copy, beyond those in the files; a merged
     model counts twice, as it is also checked by itself."""
+    characters: int = 10_000_000
+    """Characters of the scoped names of all elements together, beyond 64 for each."""
     include_depth: int = 64
     """Depth of includes."""
     depth: int = 300

@@ -8,7 +8,8 @@ import re
 import signal
 
 from builtin_interfaces.msg import Time
-from changes import Monitor, reload
+from changes import Monitor, reason_for_refusal, reload
+from command_line import CLOSED, executable_of_workspace, with_closed_streams
 import pytest
 from ros_domain import needs_fast_dds
 from rosgraph_msgs.msg import Clock
@@ -189,3 +190,17 @@ def test_a_signal_ends_it_well_while_it_reads(start_bridge, tmp_path, number):
         bridge.wait_until_sleeping()
         bridge.send(number)
         assert_ended_well(bridge)
+
+
+@pytest.mark.parametrize('closed', CLOSED, ids=' '.join)
+def test_closed_streams_and_an_ignored_sigchld_are_no_obstacle(
+        start_program, start_listener, file, closed):
+    bridge = start_program(with_closed_streams(
+        closed, executable_of_workspace('bridge'), '--ros-args', '-p', f'sdf_file:={file}'))
+    listener = start_listener()
+    for _ in range(2):
+        answer = reload(listener)
+        assert answer.success, answer.message
+    assert 'did you mean "cell.sdf"?' in reason_for_refusal(listener, sdf_file=f'{file}x')
+    bridge.send(signal.SIGINT)
+    assert bridge.wait_for_end() == 0

@@ -12,6 +12,7 @@ import pytest
 from sdf_texts import errors_of_file, LINK, model_file, names_of, world_file, write_files
 
 from sdf_pose_bridge import Limits, load, load_text, SdfError
+from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.problems import MOST_PROBLEMS
 
 FILES = 30
@@ -98,6 +99,16 @@ def test_limits_can_be_set(limit):
     text = model_file(LINK)
     with pytest.raises(SdfError, match=f'the limit {limit} is 1'):
         load_text(text, limits=Limits()._replace(**{limit: 1}))
+
+
+def test_scoped_names_together_may_have_so_many_characters():
+    names = 'l' * 500, 'k' * 400
+    text = model_file(''.join(f'<link name="{name}"/>' for name in names))
+    most = len('m') + sum(len(f'm::{name}') for name in names) + len(ROOT_FRAME) - 4 * 64
+    assert load_text(text, limits=Limits(characters=most)).names
+    with pytest.raises(SdfError, match=f'the limit characters is {most - 1}') as caught:
+        load_text(text, limits=Limits(characters=most - 1))
+    assert caught.value.errors[0].element.startswith('/sdf/model[@name="m"]/link[@name="ll')
 
 
 def test_limits_that_are_just_met_refuse_nothing(tmp_path):
