@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 _ROS_TYPES = """
 actuator_msgs/Actuators geometry_msgs/TransformStamped=Pose geometry_msgs/Twist
-geometry_msgs/Wrench nav_msgs/Odometry nav_msgs/Odometry=OdometryWithCovariance
+geometry_msgs/WrenchStamped=Wrench nav_msgs/Odometry nav_msgs/Odometry=OdometryWithCovariance
 ros_gz_interfaces/Altimeter ros_gz_interfaces/Contacts rosgraph_msgs/Clock sensor_msgs/BatteryState
 sensor_msgs/CameraInfo sensor_msgs/FluidPressure sensor_msgs/Image sensor_msgs/Imu=IMU
 sensor_msgs/JointState=Model sensor_msgs/LaserScan sensor_msgs/MagneticField=Magnetometer
@@ -88,7 +88,10 @@ contact Contacts contacts {contact/topic} @/contact
 commands
 DiffDrive,MecanumDrive,TrackedVehicle,VelocityControl Twist cmd_vel {topic} ~/cmd_vel
 AckermannSteering Twist cmd_vel {topic} ~/{sub_topic} ~/cmd_vel ?!steering_only
-AckermannSteering Double steer_angle {topic} ~/{sub_topic} ~/steer_angle ?steering_only
+AckermannSteering Double steer_angle {topic} ~/{sub_topic} ~/steer_angle ?steering_only \
+    ?!use_actuator_msg
+AckermannSteering Actuators actuators {topic} ~/{sub_topic} /actuators ?steering_only \
+    ?use_actuator_msg
 DiffDrive Boolean enable ~/enable
 TrackedVehicle Double steering_efficiency {steering_efficiency_topic} ~/steering_efficiency
 JointPositionController Double {joint_name}/cmd_pos {topic} ~/{sub_topic} \
@@ -151,8 +154,7 @@ class GazeboTopic(NamedTuple):
 
 def topics_of(owner: str, values: Mapping[str, str]) -> list[GazeboTopic]:
     """Return the topics of a class of plugins or a type of sensors, by the values of fields."""
-    # The names of libraries do not have all capitals of the classes.
-    topics = _TOPICS_BY_OWNER.get(owner.lower().removesuffix('_camera'), ())
+    topics = TOPICS_BY_OWNER.get(_key(owner).removesuffix('_camera'), ())
     return [topic for topic in topics if all(
         is_true(values, each.lstrip('!')) != each.startswith('!') for each in topic.conditions)]
 
@@ -160,6 +162,11 @@ def topics_of(owner: str, values: Mapping[str, str]) -> list[GazeboTopic]:
 def is_true(values: Mapping[str, str], name: str) -> bool:
     """Return whether a parameter is true, or the type of boxes is the second one."""
     return values.get(name, '').lower() in ('1', 'true', '3d')
+
+
+def _key(owner: str) -> str:
+    # A class begins with a capital, unlike a type. Names of libraries do not have all capitals.
+    return owner[:1] + owner[1:].lower()
 
 
 def _topics_by_owner() -> Mapping[str, list[GazeboTopic]]:
@@ -172,10 +179,10 @@ def _topics_by_owner() -> Mapping[str, list[GazeboTopic]]:
             names = [_ABBREVIATIONS.get(each[0], each[0]) + each[1:] for each in words
                      if each[0] not in '?*']
             conditions, frames = ([each[1:] for each in words if each[0] == mark] for mark in '?*')
-            for owner in owners.lower().split(','):
-                topics[owner].append(GazeboTopic(
+            for owner in owners.split(','):
+                topics[_key(owner)].append(GazeboTopic(
                     group, gz_type, ros_name, names, conditions, ''.join(frames), reason))
     return topics
 
 
-_TOPICS_BY_OWNER = _topics_by_owner()
+TOPICS_BY_OWNER = _topics_by_owner()

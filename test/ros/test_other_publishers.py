@@ -20,8 +20,8 @@ from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 ROBOT = (
     '<sdf version="1.11"><model name="m"><link name="base"/><frame name="tool"/>{}</model></sdf>')
 IMU = (
-    '<link name="l"><sensor name="s" type="imu"><gz_frame_id>imu_link</gz_frame_id></sensor>'
-    '</link>')
+    '<link name="l"><sensor name="s" type="imu"><gz_frame_id>imu_link</gz_frame_id>'
+    '<frame_id>imu</frame_id></sensor></link>')
 LATCHED = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 SAME_PARENT = 'frame "tool" is also published on /tf_static by "/other", with the parent "m",'
 

@@ -2,9 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Topics of plugins and sensors of Gazebo, by their parameters."""
 
+import re
+from string import Formatter
+
+from gazebo_facts import ROS_TYPES as ROS_FACTS, TOPICS
 import pytest
 
-from sdf_pose_bridge.sdformat.gazebo_topics import ROS_TYPES, topics_of
+from sdf_pose_bridge.sdformat.gazebo_topics import _key, ROS_TYPES, topics_of, TOPICS_BY_OWNER
 
 VALUES = {'W': 'w', 'P': 'a/model/b', 'M': 'b', 'N': 'b', 'C': 'link/l', 'S': 's'}
 SENSOR = '/world/w/model/a/model/b/link/l/sensor/s'
@@ -15,7 +19,7 @@ def names_of(owner, **parameters):
     return [name for each in topics_of(owner, values) if (name := each.name(values))]
 
 
-@pytest.mark.parametrize('owner', ['', 'MyPlugin', 'my_sensor', 'Physics'])
+@pytest.mark.parametrize('owner', ['', 'MyPlugin', 'my_sensor', 'Physics', 'Imu', 'Contact', 'NavSat', 'ForceTorque'])
 def test_an_unknown_plugin_or_sensor_has_no_topics(owner):
     assert topics_of(owner, VALUES) == []
 
@@ -33,33 +37,60 @@ def test_names_are_cleaned_as_by_gazebo(topic, name):
     assert names_of('MecanumDrive', topic=topic)[1] == name
 
 
+def owner_facts():
+    """Return the parameters and the facts about the topics of each owner."""
+    found = []
+    for line in filter(None, TOPICS.splitlines()):
+        place, *words = line.split()
+        if place.endswith(':'):
+            owners, *parameters = words
+            facts = []
+            found += [(owner, dict(each.split('=') for each in parameters), facts)
+                      for owner in owners.split(',')]
+        else:
+            assert re.fullmatch(r'([A-Za-z]+\.cc:)?[1-9][0-9]*', place)
+            group, gz_type, ros_name, name = words
+            facts.append((group, gz_type, ros_name, name.replace('@', SENSOR)))
+    return found
+
+
+@pytest.mark.parametrize(('owner', 'parameters', 'facts'), owner_facts())
+def test_topics_are_those_of_the_sources(owner, parameters, facts):
+    values = {**VALUES, **parameters}
+    assert sorted(
+        (each.group, each.gz_type, each.ros_name.format_map(values), each.name(values))
+        for each in topics_of(owner, values)) == sorted(facts)
+
+
+def test_each_row_with_each_of_its_names_is_held_by_a_fact():
+    held = set()
+    for owner, parameters, _ in owner_facts():
+        values = {**VALUES, **parameters}
+        for topic in topics_of(owner, values):
+            name = next(each for each in topic.names if not missing_fields(each, values))
+            held.add((_key(owner).removesuffix('_camera'), topic.gz_type, topic.ros_name, name))
+    assert held == {
+        (owner, topic.gz_type, topic.ros_name, name) for owner, topics in TOPICS_BY_OWNER.items()
+        for topic in topics for name in topic.names}
+
+
+def missing_fields(name, values):
+    return {field for _, field, *_ in Formatter().parse(name) if field} - values.keys()
+
+
+def test_types_in_ros_are_those_of_ros_gz_bridge():
+    facts = [line.split()[1:] for line in ROS_FACTS.strip().splitlines()]
+    assert dict(facts) == ROS_TYPES
+    bridged = {topic.gz_type for topics in TOPICS_BY_OWNER.values() for topic in topics
+               if not topic.reason}
+    assert bridged == ROS_TYPES.keys()
+
+
 @pytest.mark.parametrize(('owner', 'parameters', 'names'), [
-    ('JointStatePublisher', {}, ['/world/w/model/a/model/b/joint_state']),
-    ('jointstatepublisher', {'topic': 'js'}, ['/js']),
-    ('DiffDrive', {}, ['/model/b/odometry', '/model/b/cmd_vel', '/model/b/enable']),
-    ('AckermannSteering', {'sub_topic': 'x', 'odom_topic': 'o'}, ['/o', '/model/b/x']),
-    ('AckermannSteering', {'steering_only': 'true'}, ['/model/b/steer_angle']),
-    ('OdometryPublisher', {}, ['/model/b/odometry', '/model/b/odometry_with_covariance']),
-    ('PosePublisher', {}, ['/model/a/model/b/pose']),
-    ('PosePublisher', {'topic': 'p', 'static_publisher': '1'}, ['/p_static', '/p']),
-    ('JointPositionController', {'joint_name': 'j', 'joint_index': '1'},
-     ['/model/b/joint/j/1/cmd_pos']),
-    ('JointPositionController', {'joint_name': 'j', 'use_actuator_msg': 'true'}, ['/actuators']),
+    ('Jointstatepublisher', {'topic': 'js'}, ['/js']),
     ('JointController', {}, []),
-    ('Thruster', {'joint_name': 'j'}, ['/model/b/joint/j/cmd_thrust']),
     ('Thruster', {'topic': '/t', 'use_angvel_cmd': 'true'}, ['/bt']),
-    ('LinearBatteryPlugin', {'battery_name': 'x'}, ['/model/b/battery/x/state']),
-    ('camera', {}, [f'{SENSOR}/image', f'{SENSOR}/camera_info']),
     ('camera', {'topic': 'c'}, ['/c', '/camera_info']),
-    ('camera', {'topic': 'c/raw', 'camera/camera_info_topic': 'i', 'camera/triggered': 'true'},
-     ['/c/raw', '/i', '/c/raw/trigger']),
-    ('depth_camera', {}, [
-        f'{SENSOR}/camera_info', f'{SENSOR}/depth_image', f'{SENSOR}/depth_image/points']),
-    ('wideanglecamera', {'topic': 'a/w'}, ['/a/w', '/a/camera_info']),
-    ('rgbd_camera', {'topic': 'r'}, ['/r/image', '/r/depth_image', '/r/points', '/r/camera_info']),
-    ('gpu_lidar', {}, [f'{SENSOR}/scan', f'{SENSOR}/scan/points']),
-    ('contact', {'topic': 'no', 'contact/topic': 'yes'}, ['/yes']),
-    ('force_torque', {}, [f'{SENSOR}/forcetorque']),
 ])
 def test_names(owner, parameters, names):
     assert names_of(owner, **parameters) == names
@@ -76,9 +107,3 @@ def test_parameters_decide_on_types(parameter, gz_type):
     'lidar', 'ray', 'air_speed', 'logical_camera', 'SceneBroadcaster'])
 def test_topics_that_cannot_be_bridged_have_a_reason(owner):
     assert all(each.reason for each in topics_of(owner, VALUES))
-
-
-def test_types_in_ros_are_complete_names():
-    assert ROS_TYPES['Model'] == 'sensor_msgs/msg/JointState'
-    assert ROS_TYPES['Twist'] == 'geometry_msgs/msg/Twist'
-    assert all(each.split('/')[1] == 'msg' for each in ROS_TYPES.values())

@@ -9,6 +9,8 @@ from tf_checks import model, only_tree_error, parents_of, pose_of, tree_of
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.tf.frame_ids import FrameNames, FrameNaming
+from sdf_pose_bridge.tf.lookup import PoseLookup
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
 NESTED = '<link name="l"/><model name="n"><link name="k"/></model>'
 CHILDREN = ['visual', 'collision', 'light', 'particle_emitter', 'projector']
@@ -174,3 +176,11 @@ def test_two_sensors_in_one_place_share_a_frame_id():
     tree = tree_of(link_with(lidar('s', 'laser') + lidar('t', 'laser')))
     assert tree.frame_ids == ('m', 'l', 'laser')
     assert pose_of(tree, 'laser')[:3] == [1, 0, 0]
+
+
+def test_of_two_frames_of_a_sensor_look_ups_name_the_first():
+    scene = load_text(link_with(
+        f'<sensor name="s" type="imu">{TAGS["f"]}{TAGS["g"]}</sensor>'))
+    lookup = PoseLookup(scene, tf_tree_from_scene(scene))
+    assert lookup.pose('m::l', 'm::l::s').frame_id == 'f'
+    assert lookup.pose('m::l', 'g').frame_id == 'g'

@@ -125,6 +125,12 @@ def test_topics_have_the_names_of_the_bridge_and_of_gazebo():
             '/model/cart/odometry_with_covariance': False}.items()}
 
 
+def test_the_odometry_with_covariance_is_in_the_same_frame():
+    odometry = tree_of(plugin('OdometryPublisher', '<odom_frame>map</odom_frame>')).odometry
+    assert {frame_id for _, frame_id, _ in odometry} == {'map'}
+    assert len(odometry) == 5
+
+
 def test_odometries_on_one_topic_are_told_with_both_plugins_and_the_cure():
     (warning,) = tree_of(plugin('DiffDrive') + plugin('OdometryPublisher')).warnings
     assert warning.message == (
