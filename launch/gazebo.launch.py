@@ -11,12 +11,15 @@ the file of a robot that is spawned, add its name and that of the world:
     ros2 launch sdf_pose_bridge gazebo.launch.py sdf_file:=model.sdf \
         model_name:=x500_0 world_name:=default
 
+xacro expands a file whose name ends with ``.xacro`` first, with ``xacro_arguments``.
+
 Needs the package ros_gz_bridge.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
+import shlex
 import shutil
 import subprocess
 import sys
@@ -57,6 +60,9 @@ def generate_launch_description() -> LaunchDescription:
         *(DeclareLaunchArgument(name, default_value='', description=description)
           for name, description in OPTIONS.items()),
         DeclareLaunchArgument(
+            'xacro_arguments', default_value='', description='Arguments for xacro, such as '
+            'name:=value; for a file that ends with .xacro.'),
+        DeclareLaunchArgument(
             'gazebo', default_value='false', description='Whether to start Gazebo with the file.'),
         DeclareLaunchArgument(
             'rviz', default_value='false',
@@ -79,13 +85,18 @@ def _actions(context: LaunchContext) -> list[ExecuteProcess | IncludeLaunchDescr
         LaunchConfiguration('sdf_file').perform(context)))
     options = [f'--{name.replace("_", "-")}={value}' for name, value in given.items() if value]
     folder = Path(tempfile.mkdtemp(prefix='sdf_pose_bridge_'))
+    if path.endswith('.xacro'):
+        # Files that it names are beside the original.
+        options += ['-I', str(Path(path).absolute().parent)]
+        expanded = str(folder / Path(path).name.removesuffix('.xacro'))
+        arguments = shlex.split(LaunchConfiguration('xacro_arguments').perform(context))
+        _run(['xacro', path, *arguments, '-o', expanded])
+        path = expanded
     for name, further in ('bridge.yaml', ()), ('node.yaml', ('--node',)):
-        written = subprocess.run(
-            [sys.executable, '-m', 'sdf_pose_bridge', 'gz_bridge', path, *options, *further,
-             '-o', str(folder / name)], stderr=subprocess.PIPE, text=True, check=False)
-        if written.returncode:
-            raise RuntimeError(written.stderr)
-    sys.stderr.write(written.stderr)
+        warnings = _run([
+            sys.executable, '-m', 'sdf_pose_bridge', 'gz_bridge', path, *options, *further,
+            '-o', str(folder / name)])
+    sys.stderr.write(warnings)
     return [
         *([ExecuteProcess(cmd=['gz', 'sim', '-r', path], output='screen')] if with_gazebo else []),
         Node(
@@ -100,3 +111,11 @@ def _actions(context: LaunchContext) -> list[ExecuteProcess | IncludeLaunchDescr
                 'sdf_file': '', 'params_file': str(folder / 'node.yaml'),
                 'rviz': LaunchConfiguration('rviz')}.items()),
     ]
+
+
+def _run(command: list[str]) -> str:
+    """Run a program; return its warnings."""
+    written = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False)
+    if written.returncode:
+        raise RuntimeError(written.stderr)
+    return written.stderr

@@ -3,8 +3,8 @@
 """
 The topics of Gazebo as its sources name them, with the files and the lines.
 
-They are gz-sim 8.14.0 (b81e26da), gz-sensors 8.2.2 (c8159af0) and ros_gz_bridge of Jazzy (739cb42a).
-The model ``b`` is in the model ``a`` in the world ``w``, and a sensor ``s`` in its link ``l``.
+They are gz-sim 8.14.0 (b81e26da), gz-sensors 8.2.2 (c8159af0) and ros_gz_bridge of Jazzy
+(739cb42a). The model ``b`` is in the model ``a`` in the world ``w``, and a sensor ``s`` in its link ``l``.
 """
 
 TOPICS = """
@@ -65,11 +65,11 @@ AckermannSteering.cc: AckermannSteering steering_only=true topic=x sub_topic=z
 399 commands Double steer_angle /x
 AckermannSteering.cc: AckermannSteering steering_only=true sub_topic=z
 404 commands Double steer_angle /model/b/z
-AckermannSteering.cc: AckermannSteering steering_only=true use_actuator_msg=true
+AckermannSteering.cc: AckermannSteering steering_only=1 use_actuator_msg=1
 415 commands Actuators actuators /actuators
-AckermannSteering.cc: AckermannSteering steering_only=true use_actuator_msg=true topic=x sub_topic=z
+AckermannSteering.cc: AckermannSteering steering_only=1 use_actuator_msg=1 topic=x sub_topic=z
 399 commands Actuators actuators /x
-AckermannSteering.cc: AckermannSteering steering_only=true use_actuator_msg=true sub_topic=z
+AckermannSteering.cc: AckermannSteering steering_only=1 use_actuator_msg=1 sub_topic=z
 404 commands Actuators actuators /model/b/z
 MecanumDrive.cc: MecanumDrive
 300 commands Twist cmd_vel /model/b/cmd_vel

@@ -243,6 +243,19 @@ def test_the_bridge_of_gazebo_and_the_node_get_files_that_match(tmp_path, monkey
         'sdf_file': str(world), 'use_sim_time': True, 'model_pose_topics': ['/{model}/odometry']}
 
 
+def test_the_bridge_of_gazebo_is_made_of_what_xacro_makes(tmp_path, monkeypatch):
+    installed('ros_gz_bridge', tmp_path, monkeypatch)
+    world = world_file('<model name="a"><link name="l"/></model>')
+    command(tmp_path, monkeypatch, 'xacro', f"echo '{world}' > $4; echo $1 $2 > $4.arguments")
+    source = tmp_path / 'w.sdf.xacro'
+    nodes = parameters_of_nodes(
+        'gazebo.launch.py', sdf_file=str(source), xacro_arguments='side:=left')
+    found = nodes['bridge']
+    assert Path(found['sdf_file']).name == 'w.sdf'
+    assert found['resource_paths'] == [str(tmp_path)]
+    assert Path(f'{found["sdf_file"]}.arguments').read_text() == f'{source} side:=left\n'
+
+
 @pytest.mark.parametrize(('arguments', 'reason'), [
     ({}, 'FILE_READ'), ({'gazebo': 'true'}, 'needs the program gz')])
 def test_an_error_of_the_file_or_a_missing_gazebo_is_reported(

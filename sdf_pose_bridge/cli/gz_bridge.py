@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 import json
 from pathlib import Path
 import sys
@@ -14,11 +14,14 @@ from xml.sax.saxutils import escape, quoteattr
 from sdf_pose_bridge.cli.arguments import add_file_arguments, add_output_argument, argument_type
 from sdf_pose_bridge.cli.loading import doubts_about_frames, scene_of, STANDARD_INPUT
 from sdf_pose_bridge.cli.printing import CommandError, print_problems, write_text
-from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.errors import SdfError, SdfWarning
+from sdf_pose_bridge.names import hint_from_names, printable, SEPARATOR
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.gazebo_topics import GROUPS, ROS_TYPES
+from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.gazebo_bridge import bridged_topics, BridgedTopic, node_parameters
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 HELP = 'write the configuration of ros_gz_bridge for a file'
 DESCRIPTION = (
@@ -53,9 +56,11 @@ def run(options: argparse.Namespace) -> int:
                'that is spawned')
         raise CommandError(msg)
     scene = scene.with_model_name(options.model_name)
-    topics = bridged_topics(_scene_of_gazebo(scene, options), options.only, world)
+    scene_of_gazebo = _scene_of_gazebo(scene, options)
+    topics = bridged_topics(scene_of_gazebo, options.only, world)
     doubts = [each.doubt for each in topics if each.doubt]
-    print_problems((), (*doubts_about_frames(scene), *doubts), sys.stderr)
+    print_problems((), (*doubts_about_frames(scene), *doubts, *_doubts_about_ids(
+        topics, scene_of_gazebo, scene, is_spawned=bool(options.model_name))), sys.stderr)
     if options.node:
         parameters = {
             'sdf_file': '' if path == STANDARD_INPUT else str(Path(path).absolute()),
@@ -80,6 +85,30 @@ def _scene_of_gazebo(scene: Scene, options: argparse.Namespace) -> Scene:
     return load_text(text, resource_paths=options.resource_paths, plugins=True)
 
 
+def _doubts_about_ids(
+    topics: Sequence[BridgedTopic], scene_of_gazebo: Scene, scene: Scene, *, is_spawned: bool,
+) -> Iterator[SdfWarning]:
+    """Warn of frame ids in messages that the node does not publish."""
+    options = TfOptions(
+        frame_names=FrameNames.SCOPED if is_spawned else FrameNames.AUTO, kinds=None)
+    try:
+        frame_ids = {'', *tf_tree_from_scene(scene, options).frame_ids}
+    except SdfError:  # it is told already
+        return
+    for bridged in topics:
+        for element, *_, topic, values in bridged.owners:
+            sensor = scene_of_gazebo.sensors.get(element)
+            found = [sensor.frame_id, sensor.older_frame_id] if sensor else [
+                values.get('child_frame_id') or values.get('robot_base_frame', '')
+            ] if topic.odometry_frame else []
+            for frame_id in {each.replace(SEPARATOR, '/') for each in found} - frame_ids:
+                hint = hint_from_names(frame_id, sorted(frame_ids))
+                frame_ids.add(frame_id)
+                msg = (f'messages on {bridged.gz_name} have the frame id "{frame_id}", which is '
+                       f'none of the node{hint}')
+                yield SdfWarning('WARNING', msg, scene_of_gazebo.place(element))
+
+
 def _lines(bridged: BridgedTopic) -> Iterator[str]:
     topic = bridged.topic
     if topic.reason:
@@ -90,6 +119,8 @@ def _lines(bridged: BridgedTopic) -> Iterator[str]:
     yield f'- ros_topic_name: {_yaml_from_value(bridged.ros_name)}'
     yield f'  gz_topic_name: {_yaml_from_value(bridged.gz_name)}'
     yield f'  ros_type_name: {ROS_TYPES[topic.gz_type]}'
+    if topic.gz_type == 'Twist':
+        yield f'  # ros_type_name: {ROS_TYPES[topic.gz_type]}Stamped'
     yield f'  gz_type_name: gz.msgs.{topic.gz_type}'
     yield f'  direction: {"ROS_TO_GZ" if topic.group == "commands" else "GZ_TO_ROS"}'
     yield f'  lazy: {_yaml_from_value(topic.group == "sensors")}'

@@ -127,7 +127,7 @@ def _refuse_xacro(root: XmlElement, path: str, sources: Sources) -> None:
 
     Otherwise it would be read with another meaning: macros are not called, and the content of
     ``<xacro:if>`` is left out. Only declarations, and expressions in plugins, names of topics and
-    locations of meshes, change no frame; such locations cause one warning.
+    locations of meshes, change no frame; the first one causes a warning.
     """
     name = Path(path).name
     is_xacro, is_sdf = name.endswith('.xacro'), root.tag == 'sdf'
@@ -157,3 +157,10 @@ def _refuse_xacro(root: XmlElement, path: str, sources: Sources) -> None:
         msg = (f'{location[1]} is for xacro or launch files and is not expanded, so the file '
                'there is not found; no frame depends on it')
         sources.warning(location[0], msg)
+        return
+    for xml in root.iter('*'):
+        if found := [part for value, part in _values(xml) if _XACRO_EXPRESSION.search(value)]:
+            sources.warning(xml, (
+                f'{found[0]} is for xacro or launch files and is not expanded; no frame depends '
+                'on it, but names in Gazebo may'))
+            return

@@ -123,3 +123,34 @@ def test_the_node_follows_the_topics_that_are_bridged(parsed, files, arguments, 
     assert topics.warnings == ()
     assert [*topics.joint_states.values()] == [*topics.model_poses.values()] == models
     assert {*topics.joint_states, *topics.model_poses} <= bridged
+
+
+def test_commands_of_velocity_show_the_stamped_type(run_main):
+    output = run_main('gz_bridge', 'two.sdf', '--only', 'commands').stdout
+    assert ('  ros_type_name: geometry_msgs/msg/Twist\n'
+            '  # ros_type_name: geometry_msgs/msg/TwistStamped\n') in output
+
+
+BURGER = ('<link name="base_footprint">{}</link><plugin filename="f" '
+          'name="gz::sim::systems::DiffDrive"><child_frame_id>base_footprint</child_frame_id>'
+          '</plugin>')
+BURGER_URDF = (
+    '<robot name="r"><link name="l"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" '
+    'ixy="0" ixz="0" iyz="0"/></inertial></link>'
+    f'<gazebo reference="l">{SENSORS}</gazebo></robot>')
+BURGER_NAME = ['--model-name', 'burger', '--world-name', 'w']
+
+
+@pytest.mark.parametrize(('text', 'arguments', 'told'), [
+    (model_file(BURGER.format('')), [], ''),
+    (model_file(BURGER.format('')), BURGER_NAME,
+     '"base_footprint", which is none of the node; did you mean "burger/base_footprint"?'),
+    (model_file(f'<link name="l">{SENSORS}</link>'), BURGER_NAME, ''),
+    (BURGER_URDF, BURGER_NAME, '/link/l/sensor/s/imu have the frame id "imu", which is none'),
+])
+def test_frame_ids_that_the_node_does_not_publish_are_told(
+        run_main, files, text, arguments, told):
+    (files / 'robot.sdf').write_text(text)
+    errors = run_main('gz_bridge', 'robot.sdf', *arguments).stderr
+    assert told in errors
+    assert errors.count('none of the node') == bool(told)

@@ -5,10 +5,11 @@
 import re
 from string import Formatter
 
-from gazebo_facts import ROS_TYPES as ROS_FACTS, TOPICS
+from gazebo_facts import ROS_TYPES as ROS_FACTS
+from gazebo_facts import TOPICS
 import pytest
 
-from sdf_pose_bridge.sdformat.gazebo_topics import _key, ROS_TYPES, topics_of, TOPICS_BY_OWNER
+from sdf_pose_bridge.sdformat.gazebo_topics import _key, ROS_TYPES, TOPICS_BY_OWNER, topics_of
 
 VALUES = {'W': 'w', 'P': 'a/model/b', 'M': 'b', 'N': 'b', 'C': 'link/l', 'S': 's'}
 SENSOR = '/world/w/model/a/model/b/link/l/sensor/s'
