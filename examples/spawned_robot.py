@@ -21,6 +21,8 @@ from sdf_pose_bridge.ros.transforms import transforms_from_parameters
 
 def main() -> None:
     """Publish the frames of the file, with the name of the robot, until Ctrl-C."""
+    if len(sys.argv) != 3:
+        sys.exit('usage: spawned_robot.py FILE NAME')
     sdf_file, name = sys.argv[1:]
     rclpy.init()
     node = rclpy.create_node('spawner')

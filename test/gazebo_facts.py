@@ -4,7 +4,8 @@
 The topics of Gazebo as its sources name them, with the files and the lines.
 
 They are gz-sim 8.14.0 (b81e26da), gz-sensors 8.2.2 (c8159af0) and ros_gz_bridge of Jazzy
-(739cb42a). The model ``b`` is in the model ``a`` in the world ``w``, and a sensor ``s`` in its link ``l``.
+(739cb42a). The model ``b`` is in the model ``a`` in the world ``w``, and a sensor ``s`` in its
+link ``l``.
 """
 
 TOPICS = """

@@ -98,8 +98,13 @@ def settings_from_values(values: Mapping[str, Any]) -> Settings:
     Convert values of parameters without a node.
 
     :param values: values by the names of parameters; other parameters have their defaults.
-    :raises SettingsError: if a value has the wrong type or is not allowed.
+    :raises SettingsError: if there is no such parameter, or a value has the wrong type or is not
+        allowed.
     """
+    if unknown := values.keys() - DECLARATIONS.keys():
+        raise SettingsError([
+            f'there is no parameter {name}{hint_from_names(name, DECLARATIONS)}'
+            for name in sorted(unknown)])
     given = {name: Parameter(name, value=value) for name, value in values.items()}
     return changed_settings(Settings({}), _parameters_at_start(given, {}))
 

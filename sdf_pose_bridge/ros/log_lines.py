@@ -47,12 +47,15 @@ class RareWarnings:
         self._warnings_due: dict[str, float] = {}
         self._reported_names: set[str] = set()
 
+    def is_due(self, about: str) -> bool:
+        """Return whether the last warning about the same was long ago."""
+        return time.monotonic() >= self._warnings_due.get(about, 0.0)
+
     def warn(self, about: str, text: Callable[[], str]) -> bool:
         """Log a warning, unless the last one about the same was not long ago."""
-        now = time.monotonic()
-        is_due = now >= self._warnings_due.get(about, 0.0)
+        is_due = self.is_due(about)
         if is_due:
-            self._warnings_due[about] = now + WARNING_PERIOD_S
+            self._warnings_due[about] = time.monotonic() + WARNING_PERIOD_S
             self._logger.warning(line_from_text(text()))
         return is_due
 

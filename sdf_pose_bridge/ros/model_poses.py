@@ -14,7 +14,6 @@ import numpy as np
 
 from sdf_pose_bridge.geometry.poses import Pose, pose_product
 from sdf_pose_bridge.geometry.rotations import canonical_quaternion
-from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.ros.cdr import LONGEST_READ_S, StampedPose
 from sdf_pose_bridge.ros.log_lines import names_in_line
 from sdf_pose_bridge.ros.state_messages import KnownEffects, Message, StateSource
@@ -50,7 +49,7 @@ def messages_from_poses(
         source.warn(line, partial(str, line))
     # Poses of one stamp in one frame become one message.
     groups: dict[_Group, dict[int, Sequence[float]]] = {}
-    unknown, others, carried = list[str](), list[str](), dict[int, str]()
+    unknown, others, carried = list[str](), list[str](), dict[tuple[int, str], str]()
     invalid = list[tuple[float, ...]]()
     ends_at = time.thread_time() + LONGEST_READ_S
     for stamp_ns, frame_id, child, numbers in poses:
@@ -69,7 +68,7 @@ def messages_from_poses(
         elif found[0] is None:
             others.append(frame_id)
         elif found[1] == model:
-            carried[model] = frame_id
+            carried[model, placed] = frame_id
         elif not (abs(math.hypot(*numbers[3:]) - 1.0) <= MOST_OFF_UNIT
                   and all(abs(number) <= LARGEST_POSITION for number in numbers[:3])):
             invalid.append(numbers)
@@ -81,21 +80,22 @@ def messages_from_poses(
             placed = odometry.nested_model if odometry else (
                 placements or {}).get(model, placed)
             groups.setdefault(_Group(stamp_ns, found[0], placed, found[1]), {})[model] = pose
-    for group in groups.values():
-        for model in group:
-            carried.pop(model, None)
+    models = {model for group in groups.values() for model in group}
+    # The pose of the model may come in another message.
+    names = [frame_id for key, frame_id in carried.items()
+             if key in source.carried and key[0] not in models]
+    source.carried = {key for key in source.carried.union(carried) if key[0] not in models}
     if unknown:
         reason = f'the topic is for the model "{source.model}"' if dof is not None else (
             'no model has this name, or it is static, or a joint connects it to another body')
         source.warn_once('models', unknown, lambda: (
             f'{source.name} has poses of {names_in_line(unknown)}, which are ignored: {reason}'
-            f'{"" if source.model else hint_from_names(unknown[0], effects.models)}'))
+            f'{"" if source.model else effects.hint(unknown[0])}'))
     if others:
         source.warn_once('frames', others, lambda: (
             f'{source.name} has poses in {names_in_line(others)}, which are ignored: there is '
             'no such frame; if it is the same as the root frame, name it in model_pose_frames'))
-    if carried:
-        names = list(carried.values())
+    if names:
         source.warn_once('carried', names, lambda: (
             f'{source.name} has poses in {names_in_line(names)}, which are ignored: such a frame '
             "moves with the model, and does not say where it is; Gazebo's PosePublisher sends "

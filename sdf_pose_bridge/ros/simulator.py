@@ -135,7 +135,7 @@ class Simulator(StateSource):
     # What the executor does
 
     def _ask(self) -> None:
-        if self._to_tell != self._told:
+        if self._to_tell != self._told and self.is_due('names'):
             self._told = self._to_tell
             if self._told:
                 self._ask_for_names(self._told)
@@ -254,7 +254,10 @@ class Simulator(StateSource):
         poses, others = {}, []
         for entity, state in zip(answer.entities, answer.states, strict=True):
             name = self._models.get(entity, '')
-            if not name and entity not in self._known and len(entity) <= MOST_CHARACTERS:
+            if not entity:
+                self.warn_once('unnamed', [''], lambda: (
+                    f'{self.name} has an entity without a name, which is left out'))
+            elif not name and entity not in self._known and len(entity) <= MOST_CHARACTERS:
                 others.append(entity)
                 is_body = effects.models.get(entity) == self._positions.others.get(entity, NO_DOF)
                 name = entity if is_body else ''

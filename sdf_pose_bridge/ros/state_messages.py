@@ -17,7 +17,7 @@ from rclpy.subscription import Subscription
 
 from sdf_pose_bridge.geometry.poses import pose_products
 from sdf_pose_bridge.geometry.rotations import Floats
-from sdf_pose_bridge.names import scoped_name
+from sdf_pose_bridge.names import hint_from_names, scoped_name, SEPARATOR
 from sdf_pose_bridge.ros.cdr import Rows, SerializedNames
 from sdf_pose_bridge.ros.log_lines import names_in_line, RareWarnings
 from sdf_pose_bridge.ros.message_counts import MessageCounts
@@ -96,6 +96,9 @@ class StateSource(RareWarnings):
         """Time of the node when the last message was used; the caller sets it."""
         self.number: int | None = None
         """The number that its publisher has given the last message, if messages have numbers."""
+        self.carried = set[tuple[int, str]]()
+        """The free models without a pose of their own since those of frames that they carry, with
+        the names of these."""
         self._node = node
         super().__init__(node.get_logger())
 
@@ -271,7 +274,17 @@ class KnownEffects:
             model = dof
         if model is None or dof not in (None, model):
             return None, ''
+        if child and not name and child not in self.models:
+            # As in the file of the model, without its name.
+            in_model = scoped_name(self._scoped_names[model], child.replace('/', SEPARATOR))
+            name = in_model if self.lookup.knows(in_model) else ''
         return model, name
+
+    def hint(self, child: str) -> str:
+        """Return the end of a message about a child frame id that names no model."""
+        frame_ids = self._frames.tree.frame_ids
+        longer = [each for each in frame_ids if child and each.endswith(f'/{child}')]
+        return f'; did you mean "{longer[0]}"?' if longer else hint_from_names(child, self.models)
 
     def odometry_in(self, frame_id: str, dof: int, source: StateSource) -> Odometry | None:
         """

@@ -15,7 +15,9 @@ from sdf_pose_bridge.tf.loading import loaded_scene_from_request
 
 def transforms_from_parameters(**parameters: Any) -> list[TransformStamped]:
     """
-    Return the transforms that the node publishes first, without stamps.
+    Return the transforms that the node publishes, without stamps.
+
+    Those that joints or poses of models move are as the file puts them.
 
     :param parameters: parameters of the node, such as ``sdf_file`` or ``robot_description``,
         ``model_name``, ``root_frame`` and ``frame_prefix``; others have their defaults.

@@ -51,6 +51,7 @@ def test_a_model_is_placed_before_poses_in_its_frame(models, frame_id):
 @pytest.mark.parametrize(('fields', 'line'), [
     ({'child': 'fixed'}, '/poses has poses of "fixed", which are ignored: no model has'),
     ({'child': 'aa'}, 'another body; did you mean "a"?'),
+    ({'child': 'k'}, 'another body; did you mean "p/a/k"?'),
     ({'frame_id': 'odom'}, '/poses has poses in "odom", which are ignored: there is no such'),
     ({'frame_id': f'{"x" * 255}/odom'}, '/odom", which are ignored: there is no such'),
     ({'frame_id': 'p/a/k'}, '/poses has poses in "p/a/k", which are ignored: such a frame moves'),
@@ -73,6 +74,10 @@ def test_a_pose_that_cannot_be_used_is_reported_once(models, capfd, fields, line
     ('', {'child': 'p/a/k', 'frame_id': 'p/fixed/l'}, ('a', 0.75, 4.0)),
     ('', {'child': 'a', 'model': 'a'}, ('a', 1.0, 2.0)),
     ('', {'child': 'base_link', 'model': 'a'}, ('a', 1.0, 2.0)),
+    # As in the file of the model.
+    ('', {'child': 'k', 'model': 'a'}, ('a', 0.75, 2.0)),
+    ('', {'child': 'c/l', 'model': 'a'}, ('a', pytest.approx(-3.25), 2.0)),
+    ('', {'child': 'k', 'frame_id': 'o', 'model': 'a'}, ('a', 1.0, 2.0)),
     ('', {'child': 'p/a/k', 'pose': QUARTER}, ('a', pytest.approx(1.0), pytest.approx(1.75))),
     # The frame of the parameter, whatever the child frame id says.
     ('k', {'child': '', 'model': 'a'}, ('a', 0.75, 2.0)),
@@ -170,6 +175,17 @@ def test_poses_of_links_say_nothing_unless_the_pose_of_the_model_is_there(models
     assert not messages_from_poses(links, models.source, models.effects)
     assert not messages_from_poses(links, models.source, models.effects)
     assert capfd.readouterr().err.count(words) == 1
+
+
+def test_poses_of_links_in_messages_of_their_own_are_told_if_that_of_the_model_never_comes(
+        models, capfd):
+    def send(*children):
+        for child in children:
+            models.read(child, 'w' if child == 'a' else 'p/a')
+        return capfd.readouterr().err.count('PosePublisher sends poses of models')
+
+    assert send('p/a/l', 'p/a/k', 'a', 'p/a/l', 'p/a/k', 'a', 'p/a/l', 'p/a/k') == 0
+    assert send('p/a/l') == 1
 
 
 def test_a_quaternion_that_is_nearly_unit_is_made_unit(models):

@@ -20,7 +20,8 @@ def names_of(owner, **parameters):
     return [name for each in topics_of(owner, values) if (name := each.name(values))]
 
 
-@pytest.mark.parametrize('owner', ['', 'MyPlugin', 'my_sensor', 'Physics', 'Imu', 'Contact', 'NavSat', 'ForceTorque'])
+@pytest.mark.parametrize('owner', [
+    '', 'MyPlugin', 'my_sensor', 'Physics', 'Imu', 'Contact', 'NavSat', 'ForceTorque'])
 def test_an_unknown_plugin_or_sensor_has_no_topics(owner):
     assert topics_of(owner, VALUES) == []
 
