@@ -3,6 +3,7 @@
 """Calls of a simulator, and its answers."""
 
 import sys
+import time
 from types import SimpleNamespace
 
 from deadline import spin_until
@@ -18,6 +19,7 @@ from simulation_interfaces.srv import GetEntitiesStates
 
 from sdf_pose_bridge.ros import simulator as module
 from sdf_pose_bridge.ros.given_parameters import settings_from_values
+from sdf_pose_bridge.ros.log_lines import WARNING_PERIOD_S
 from sdf_pose_bridge.ros.simulator import Simulator
 from sdf_pose_bridge.tf.loaded_scene import LoadRequest
 from sdf_pose_bridge.tf.loading import loaded_scene_from_request
@@ -212,3 +214,30 @@ def test_models_that_two_answers_lack_are_missing_unless_others_send_their_poses
 def test_other_entities_are_in_order(simulator, answer):
     answer('z', 'a', 'y')
     assert simulator.others == ('y', 'z')
+
+
+def test_an_entity_without_a_name_is_left_out_and_told_once(simulator, answer, capfd):
+    for _ in range(2):
+        answer('', 'z')
+    assert simulator.others == ('z',)
+    assert capfd.readouterr().err.count('has an entity without a name, which is left out') == 1
+
+
+def test_a_model_that_goes_soon_after_another_one_is_told_too(
+        node, simulator, service, monkeypatch, capfd):
+    log = []
+
+    def has_told(name):
+        log.append(capfd.readouterr().err)
+        return f'no entity for "{name}' in ''.join(log)
+
+    service([], 0)
+    simulator._to_tell = ['a']
+    spin_until(node.executor, lambda: has_told('a'))
+    simulator._to_tell = ['b']
+    spin_as_long_as_many_calls(node)
+    assert not has_told('b')
+    monkeypatch.setattr(time, 'monotonic', lambda now=time.monotonic: now() + WARNING_PERIOD_S)
+    spin_until(node.executor, lambda: has_told('b'))
+    spin_as_long_as_many_calls(node)
+    assert ''.join(log).count('no entity for') == 2

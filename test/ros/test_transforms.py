@@ -17,6 +17,8 @@ ROBOT = model_file(
 @pytest.mark.parametrize(('parameters', 'error', 'message'), [
     ({}, SettingsError, 'sdf_file is not set'),
     ({'robot_description': ROBOT, 'kinds': ['lnk']}, SettingsError, 'lnk'),
+    ({'robot_description': ROBOT, 'frame_prefx': 'a/'}, SettingsError,
+     'there is no parameter frame_prefx; did you mean "frame_prefix"'),
     ({'sdf_file': 'model://none'}, AddressError, 'none'),
     ({'robot_description': '<sdf/>'}, SdfError, 'version'),
 ])
