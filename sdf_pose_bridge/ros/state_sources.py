@@ -4,12 +4,14 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
 import contextlib
 import functools
 
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy
 
 from sdf_pose_bridge.ros.background import result_from_executor
 from sdf_pose_bridge.ros.cdr import JOINT_STATE, POSE_TYPES
@@ -130,25 +132,31 @@ class StateSources:
     def _find_publishers(self) -> None:
         """Subscribe to topics of poses with the types with which they are published."""
         types = dict(self._node.get_topic_names_and_types())
-        current = {key[:2]: key for key in self._topics if key.type_name != JOINT_STATE}
+        current = defaultdict[tuple[str, str], list[TopicKey]](list)
+        for key in self._topics:
+            if key.type_name != JOINT_STATE:
+                current[key[:2]].append(key)
         before = self._topics.copy()
         for place in self._wanted.model_poses.items():
-            name, key = self._node.resolve_topic_name(place[0]), current.get(place)
-            known_types = [key.type_name] if key else []
-            if types.get(name, []) in ([], known_types):
+            name, keys = self._node.resolve_topic_name(place[0]), current[place]
+            known_types = [each.type_name for each in keys[:1]]
+            has_messages = any(self._topics[each].last_ns for each in keys)
+            if types.get(name, []) == [] or (types[name] == known_types and has_messages):
                 continue
-            found = sorted({
-                each.topic_type for each in self._node.get_publishers_info_by_topic(name)})
-            if found in ([], known_types):
-                continue
+            publishers = self._node.get_publishers_info_by_topic(name)
+            found = sorted({each.topic_type for each in publishers})
             if len(found) == 1 and found[0] in POSE_TYPES:
-                # A topic has one type in a process, so a subscription has to be destroyed before
-                # the next search makes one of another type.
-                if key:
+                are_latched = {False, *(
+                    each.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL
+                    for each in publishers)}
+                # A topic has one type in a process, so subscriptions have to be destroyed before
+                # the next search makes some of another type.
+                for key in keys if found != known_types else ():
                     del self._topics[key]
-                else:
-                    self._open(TopicKey(*place, found[0]))
-            elif (name, *found) not in self._reported:
+                for key in (TopicKey(*place, found[0], each) for each in sorted(are_latched)):
+                    if key not in keys and (found == known_types or not keys):
+                        self._open(key)
+            elif found and (name, *found) not in self._reported:
                 self._reported.add((name, *found))
                 self._logger.warning(
                     f'{name} has messages of {names_in_line(found)}; topics in model_pose_topics '

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.node import Node
-from rclpy.qos import QoSPolicyKind, QoSProfile, ReliabilityPolicy
+from rclpy.qos import DurabilityPolicy, QoSPolicyKind, QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
 from sdf_pose_bridge.ros.cdr import (
@@ -36,6 +36,8 @@ class TopicKey(NamedTuple):
     """The top-level model of joint states, or the free model of poses; empty for any."""
     type_name: str
     """``JOINT_STATE``, or one of :data:`POSE_TYPES`."""
+    is_latched: bool = False
+    """Whether the subscription gets what was published before it, by latched publishers only."""
 
 
 class StateTopic(StateSource):
@@ -46,14 +48,17 @@ class StateTopic(StateSource):
         self.is_of_joints = self._pose_type is None
         package, _, name = key.type_name.split('/')
         # A best effort and volatile subscription is compatible with every publisher, so there is
-        # nothing to report unless parameters change that.
+        # nothing to report unless parameters change that. A latched one is beside such a one.
+        qos = QoSProfile(depth=MOST_WAITING, reliability=ReliabilityPolicy.BEST_EFFORT)
+        if key.is_latched:
+            qos.reliability = ReliabilityPolicy.RELIABLE
+            qos.durability = DurabilityPolicy.TRANSIENT_LOCAL
         self.subscription = node.create_subscription(
             getattr(importlib.import_module(f'{package}.msg'), name), key.name, lambda _: None,
-            QoSProfile(depth=MOST_WAITING, reliability=ReliabilityPolicy.BEST_EFFORT),
-            callback_group=NoExecutor(), raw=True,
+            qos, callback_group=NoExecutor(), raw=True,
             event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
             # Without the depth, which the node chooses.
-            qos_overriding_options=QoSOverridingOptions((
+            qos_overriding_options=None if key.is_latched else QoSOverridingOptions((
                 QoSPolicyKind.RELIABILITY, QoSPolicyKind.DURABILITY)))
         super().__init__(node, self.subscription.topic_name, key.model)
 

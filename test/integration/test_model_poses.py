@@ -14,6 +14,7 @@ from geometry_msgs.msg import (
 )
 from nav_msgs.msg import Odometry
 import pytest
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from tf2_msgs.msg import TFMessage
 from tracker import CART, stamped, Tracker, WORLD
 
@@ -46,6 +47,18 @@ def test_a_pose_of_each_type_moves_its_model(follow, tf, tracker, message_type):
     assert (found.transform.translation.z, found.transform.rotation.z) == (
         0.5, pytest.approx(math.sqrt(0.5)))
     assert pose_of(tf, 'p/cart').x == 3.0
+
+
+def test_a_pose_that_was_latched_before_the_node_starts_counts(
+        start_bridge, file, tf, tracker):
+    latched = tf.listener.node.create_publisher(PoseWithCovarianceStamped, CART, QoSProfile(
+        depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+    latched.publish(stamped(PoseWithCovarianceStamped, 7, 3.0))
+    start_bridge(sdf_file=file, model_pose_topics=[TOPIC]).wait_until_started()
+    tf.wait_for_frames('cart/deck')
+    assert tf.last['cart/deck'].transform.translation.x == 3.0
+    # A volatile publisher beside it is followed too.
+    tracker.move(4.0, message_type=PoseWithCovarianceStamped)
 
 
 def test_transforms_name_the_models_that_they_move(follow, tf, tracker):

@@ -8,6 +8,7 @@ from nav_msgs.msg import Odometry
 import pytest
 import rclpy
 from rclpy.context import Context
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from sdf_texts import world_file
 
 from sdf_pose_bridge.ros.given_parameters import settings_from_values
@@ -34,8 +35,12 @@ class Sources:
         """Call this method as the loader does."""
         return self._beside(self._node.executor, self.sources.follow, *arguments)
 
-    def publish(self, message_type, topic='a/pose'):
-        return self._other.create_publisher(message_type, topic, 10)
+    def publish(self, message_type, topic='a/pose', qos=10):
+        return self._other.create_publisher(message_type, topic, qos)
+
+    def search(self):
+        self.sources._find_publishers()
+        self._node.executor.spin_once(timeout_sec=0.01)
 
     def types(self):
         return {
@@ -45,11 +50,7 @@ class Sources:
         """Search until these are the types of the topics of poses."""
         expected = {'/joint_states': 'JointState', **{f'/{k}/pose': v for k, v in types.items()}}
 
-        def search():
-            self.sources._find_publishers()
-            self._node.executor.spin_once(timeout_sec=0.01)
-
-        wait_until(lambda: self.types() == expected, search, self.types)
+        wait_until(lambda: self.types() == expected, self.search, self.types)
 
 
 @pytest.fixture
@@ -86,6 +87,24 @@ def test_a_simulator_whose_name_is_too_long_in_the_namespace_is_told(
     assert sources.sources.simulator is None
     assert f'no messages from {name}/get_entities_states: ' in capfd.readouterr().err
     sources.sources.end()
+
+
+def test_a_latched_publisher_is_followed_by_two_subscriptions_until_there_is_a_message(
+        sources, node):
+    def durabilities():
+        return sorted(
+            each.qos_profile.durability.name for each in node.subscriptions
+            if each.topic_name == '/a/pose')
+
+    sources.publish(PoseStamped)
+    sources.wait_for(a='PoseStamped')
+    assert durabilities() == ['VOLATILE']
+    sources.publish(PoseStamped, qos=QoSProfile(
+        depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+    wait_until(lambda: durabilities() == ['TRANSIENT_LOCAL', 'VOLATILE'], sources.search)
+    assert len([*sources.sources.sources]) == 3
+    unwanted = sources.follow(StateTopics({'joint_states': ''}, {}), SETTINGS, POSITIONS)
+    assert len(unwanted) == 2
 
 
 def test_a_topic_that_changes_its_type_is_followed_anew(sources, node, other_context):
