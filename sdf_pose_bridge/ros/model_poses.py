@@ -60,7 +60,9 @@ def messages_from_poses(
         if odometry:
             model = sender
         if model is None:
-            unknown.append(child)
+            # PosePublisher may send visuals and collisions, too, each in what contains it.
+            if not (child.startswith(f'{frame_id}/') and effects.lookup.knows(frame_id)):
+                unknown.append(child)
             continue
         found = ('', NO_DOF) if odometry else effects.pose_frame(frame_id, ends_at, source)
         if found is None:

@@ -67,6 +67,14 @@ def test_a_pose_that_cannot_be_used_is_reported_once(models, capfd, fields, line
     assert capfd.readouterr().err.count(line) == 1
 
 
+def test_a_pose_of_a_part_in_what_contains_it_is_not_reported(models, capfd):
+    assert not models.read('p/a/k/mesh', 'p/a/k')
+    assert not models.read('mesh', 'p/a/k')
+    log = capfd.readouterr().err
+    assert '/poses has poses of "mesh", which are ignored' in log
+    assert 'p/a/k/mesh' not in log
+
+
 @pytest.mark.parametrize(('placement', 'fields', 'moved'), [
     # The frame that the child frame id names.
     ('', {'child': 'p/a/k'}, ('a', 0.75, 2.0)),
