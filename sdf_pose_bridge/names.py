@@ -151,7 +151,11 @@ class NameIndex:
         likely = [*_neighbors(self._names, wanted), *(
             name[::-1] for name in _neighbors(self._reversed_names, wanted[::-1]))]
         near = difflib.get_close_matches(wanted, _comparable(wanted, likely), n=1, cutoff=0.6)
-        return near[0] if near else ''
+        # Equal endings of files would make short names look alike.
+        stem, dot, ending = wanted.rpartition('.')
+        is_far = near and dot and near[0].endswith(dot + ending) and not (
+            difflib.get_close_matches(stem, [near[0].removesuffix(dot + ending)]))
+        return near[0] if near and not is_far else ''
 
     def hint(self, wanted: str) -> str:
         """Return the end of a message about a name that was not found."""

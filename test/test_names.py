@@ -42,6 +42,9 @@ def test_name_in_a_scope_or_in_a_world(scope, name, scoped):
     ('table', ['x'], ''),
     ('', ['x'], ''),
     ('tabel', ['chair', 'table'], '; did you mean "table"?'),
+    # An ending that many files have says nothing.
+    ('nothing.sdf', ['g.sdf'], ''), ('cel.sdf', ['cell.sdf'], '; did you mean "cell.sdf"?'),
+    ('cell.sdf', ['cell.world', 'g.sdf'], '; did you mean "cell.world"?'),
 ])
 def test_hint_at_the_nearest_name(wanted, names, hint):
     assert hint_from_names(wanted, names) == hint

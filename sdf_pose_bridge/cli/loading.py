@@ -94,12 +94,15 @@ def pose_lookup(scene: Scene) -> PoseLookup:
 
 
 def sdf_name(scene: Scene, name: str) -> str:
-    """Return the name in SDF of a frame; the name as it is given if no frame of TF has it."""
+    """
+    Return the name in SDF of a frame; the given one of an optical frame, which is not in SDF.
+
+    :raises UnknownFrameError: if there is no such frame.
+    """
     if not name or scene.has(name):
         return name
     lookup = pose_lookup(scene)
-    if not lookup.is_frame_id(name):
+    if not lookup.is_frame_id(name) and scene.elements_called(name):
         return name
     element, in_element = lookup.element(name)
-    # The optical frame of a camera is not in SDF.
     return scene.names[element] if in_element == Pose() else name

@@ -11,6 +11,7 @@ import contextlib
 import importlib
 import io
 import os
+from pathlib import Path
 import re
 import signal
 import sys
@@ -114,16 +115,22 @@ class _Parser(argparse.ArgumentParser):
         if unknown:
             # The dashes would make short names look alike.
             names = [option.removeprefix('--') for option in self._option_string_actions]
-            nearest = NameIndex(names).nearest(unknown[0].removeprefix('--'))
+            option = unknown[0].partition('=')[0].removeprefix('--')
+            nearest = NameIndex({*names} - {'force'}).nearest(option)
             hint = f'; did you mean "--{nearest}"?' if nearest else ''
+            if option == 'format' and '-o' in names:
+                hint = '; -o writes the format of the ending of a file'
             self.error(f'unrecognized arguments: {" ".join(unknown)}{hint}')
         return found, unknown
 
     def error(self, message: str) -> NoReturn:
         """Print the error with the nearest choice, and end the process."""
-        wrong = _INVALID_CHOICE.search(message)
-        super().error(message + (
-            hint_from_names(wrong[1], re.findall(r'\w+', wrong[2])) if wrong else ''))
+        if wrong := _INVALID_CHOICE.search(message):
+            choices = re.findall(r'\w+', wrong[2])
+            is_file = 'check' in choices and Path(wrong[1]).is_file()
+            message += f'; did you mean "{self.prog} check {wrong[1]}"?' if is_file else (
+                hint_from_names(wrong[1], choices))
+        super().error(message)
 
 
 def new_parser() -> argparse.ArgumentParser:

@@ -13,6 +13,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 import gc
 import os
+import re
 import signal
 import sys
 import threading
@@ -133,7 +134,8 @@ def run(args: Sequence[str], program_name: str, reader: SceneReader) -> int:
             print(program.usage)
             return 0
         if len(words) > program.takes_file:
-            _complain(program, f'the argument "{words[program.takes_file]}" is not understood')
+            word = words[program.takes_file]
+            _complain(program, f'the argument "{word}" is not understood{_hint(word)}')
             print(f'\n{program.usage}', file=sys.stderr)
             return 1
         node = Node(program.node_name)
@@ -251,9 +253,15 @@ def _log_warnings(node: Node, warnings: Sequence[object]) -> None:
 def _sentence_from_ros_error(error: RuntimeError) -> str:
     # The class cannot be imported by a public name.
     if type(error).__name__ == 'UnknownROSArgsError':
-        return f'unknown arguments after --ros-args: {error}'
+        return f'unknown arguments after --ros-args: {error}{_hint(str(error))}'
     # The rest of the message names source lines of ROS.
     return str(error).partition(', at /')[0]
+
+
+def _hint(text: str) -> str:
+    """Return the end of a message about an argument that is a parameter without its option."""
+    found = re.search(r'\w+:=[^\s\'"\]]*', text)
+    return f'; did you mean "--ros-args -p {found[0]}"?' if found else ''
 
 
 def _complain(program: Program, sentence: str) -> None:

@@ -117,7 +117,7 @@ def bytes_from_file(path: str, usage: Usage, *, allows_pipe: bool = False) -> by
     """
     Return the content of a file.
 
-    :param allows_pipe: whether it may be a pipe, as of the shell's ``<(command)``.
+    :param allows_pipe: whether it may be a terminal, or a pipe as of the shell's ``<(command)``.
     :raises FileReadError: if it is missing, unreadable or not a regular file;
         :class:`~sdf_pose_bridge.errors.TemporaryReadError` if reading it again may help.
     :raises LimitError: if it is too large.
@@ -127,7 +127,7 @@ def bytes_from_file(path: str, usage: Usage, *, allows_pipe: bool = False) -> by
         # Without O_NONBLOCK, opening a named pipe waits for a writer.
         with open(path, 'rb', opener=_descriptor_without_waiting) as file:
             status = os.fstat(file.fileno())
-            is_pipe = allows_pipe and stat.S_ISFIFO(status.st_mode)
+            is_pipe = allows_pipe and (stat.S_ISFIFO(status.st_mode) or file.isatty())
             if not stat.S_ISREG(status.st_mode) and not is_pipe:
                 msg = 'the file cannot be read: it is not a regular file'
                 if path.startswith('/dev/'):  # /dev/stdin, or <(xacro ...) of a shell
@@ -153,6 +153,8 @@ def _cure(path: str) -> str:
         return '; name a file in it'
     if '$' in path or path.startswith('~'):
         return '; $ and ~ stay as they are in quotes and in parameter files'
+    if path.lstrip().startswith('<'):
+        return '; this is the text of a file, which load_text reads'
     if '://' in path:
         return '; this is a URI, and not a path'
     folder, name = os.path.split(path)

@@ -275,7 +275,8 @@ def elements_in_model(scene: Scene, name: str) -> NDArray[np.bool_]:
     models = np.flatnonzero(scene.kinds == Kind.MODEL).tolist()
     names = [scene.names[model] for model in models]
     if name not in names:
-        msg = f'there is no model "{name}" to publish{hint_from_names(name, names)}'
+        models = f'; the models are {quoted_names(names)}' if names else ''
+        msg = f'there is no model "{name}" to publish{hint_from_names(name, names)}{models}'
         raise UnknownFrameError(msg, Place(scene.path))
     # The first model of that name counts.
     return scene.are_in([models[names.index(name)]])

@@ -61,8 +61,9 @@ def sdf_pose_in_shell(files):
 @pytest.fixture
 def on_terminal(files):
     """Runs it on a terminal of some columns: ``on_terminal(80, *arguments, **environment)``."""
-    def run(columns, *arguments, **environment):
+    def run(columns, *arguments, typed='', **environment):
         reader, writer = pty.openpty()
+        os.write(reader, typed.encode())
         fcntl.ioctl(writer, termios.TIOCSWINSZ, struct.pack('4H', 24, columns, 0, 0))
         with os.fdopen(reader, 'rb') as output, started(
                 [*COMMAND, *arguments], cwd=files, env={**ENVIRONMENT, **environment},

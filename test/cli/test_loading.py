@@ -17,6 +17,12 @@ from sdf_pose_bridge import SdfError
 from sdf_pose_bridge.cli.loading import load_file, scene_of
 
 
+def test_a_terminal_is_read_to_its_end(on_terminal):
+    # Ctrl-D ends the input at the beginning of a line.
+    text = on_terminal(80, 'check', '-', typed='<sdf>\n</sdf>\n\x04', NO_COLOR='1')
+    assert text.splitlines()[-1].startswith('<stdin>:1: FILE_READ: <sdf> declares no version')
+
+
 def test_an_invalid_file_has_errors_and_no_scene(options):
     scene, errors, _ = load_file('bad.sdf', options('bad.sdf'))
     assert scene is None

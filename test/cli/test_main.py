@@ -52,6 +52,19 @@ def test_an_option_is_not_abbreviated(run_main):
     assert done.stderr.startswith('usage: sdf_pose check ')
 
 
+@pytest.mark.parametrize(('arguments', 'hint'), [
+    # No option that forces is offered.
+    ('set good.sdf f --frame g 1 2 3', '--frame\n'),
+    ('set good.sdf f 1 2 3 --forc', '"--format"?\n'),
+    ('graph good.sdf --format png', '; -o writes the format of the ending of a file\n'),
+    ('view good.sdf --format=png', '; -o writes the format of the ending of a file\n'),
+    ('good.sdf', '; did you mean "sdf_pose check good.sdf"?\n'), ('missing.sdf', ')\n')])
+def test_hints_of_a_wrong_command_line(run_main, arguments, hint):
+    done = run_main(*arguments.split())
+    assert (done.returncode, done.stdout) == (2, '')
+    assert done.stderr.endswith(hint)
+
+
 @pytest.fixture
 def large_file(files):
     """The folder has a file of 200,000 links."""

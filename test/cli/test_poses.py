@@ -70,7 +70,13 @@ def test_the_reference_frame_has_its_name_in_sdf_or_tf(run_on, name):
 def test_an_unknown_frame_is_an_error_of_the_file(run_main):
     done = run_main('poses', '--relative-to', 'ff', 'good.sdf')
     assert done.returncode == 1
-    assert '"ff" names nothing in world "w"; did you mean "f"?' in done.stderr
+    assert 'no frame or element is called "ff"; did you mean "f"?' in done.stderr
+
+
+def test_the_hint_at_a_reference_frame_is_a_name_in_tf_too(run_on):
+    text = model_file('<model name="robot"><link name="tool0"/></model>')
+    done = run_on(text, 'poses', '--relative-to', 'robot/tool_0')
+    assert 'called "robot/tool_0"; did you mean "robot/tool0"?' in done.stderr
 
 
 ARM = model_file(

@@ -91,6 +91,8 @@ def test_each_reason_not_to_start_has_a_line(
 
 
 @pytest.mark.parametrize(('arguments', 'text'), [
+    (['sdf_file:=a.sdf'], 'not understood; did you mean "--ros-args -p sdf_file:=a.sdf"?'),
+    (['--ros-args', 'sdf_file:=a.sdf'], '; did you mean "--ros-args -p sdf_file:=a.sdf"?'),
     (['cell.sdf'], 'usage: ros2 run sdf_pose_bridge bridge --ros-args -p sdf_file:=cell.sdf'),
     (['--ros-args', '--no-such-flag'], 'unknown arguments after --ros-args: '),
     (['--ros-args', '--params-file', 'missing.yaml'], 'missing.yaml'),

@@ -19,7 +19,7 @@ from sdf_texts import (
     only_error,
 )
 
-from sdf_pose_bridge import load_text, SdfError
+from sdf_pose_bridge import load, load_text, SdfError
 from sdf_pose_bridge.errors import FileReadError, LimitError
 from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS, Limits, Usage
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file, xml_from_bytes
@@ -49,10 +49,15 @@ def test_unreadable_file_is_refused(tmp_path, path):
     assert (caught.value.code, caught.value.file) == ('FILE_READ', str(tmp_path / path))
 
 
+def test_a_text_instead_of_a_path_is_told():
+    with pytest.raises(FileReadError, match=r'which load_text reads$'):
+        load('\n<sdf version="1.9"/>')
+
+
 @pytest.mark.parametrize(('path', 'reason'), [
     ('cel.sdf', r'; did you mean "cell\.sdf"\?$'), ('a.dae', '"git lfs pull" fetches its content'),
     ('pipe', 'not a regular file'), ('/dev/null', 'not a regular file'), ('/', '.'),
-    ('/dev/zero', 'robot_description')])
+    ('/dev/zero', 'robot_description'), ('nothing.sdf', 'No such file or directory$')])
 def test_only_regular_files_with_content_are_read(tmp_path, path, reason):
     (tmp_path / 'cell.sdf').touch()
     (tmp_path / 'a.dae').write_text('version https://git-lfs.github.com/spec/v1\noid sha256:0\n')

@@ -273,7 +273,9 @@ def test_nearest_frame_of_each_element(kinds, anchor, nearest):
     ('fre', '"fre"'), ('free::l', '"free::l"'), ('w', '"w"'), ('world', '"world"'),
     ('corner', '"corner"'), ('boltd', 'did you mean "bolted"')])
 def test_an_unknown_model(name, part):
-    assert part in only_tree_error(CELL, model=name).message
+    message = only_tree_error(CELL, model=name).message
+    assert part in message
+    assert '; the models are "' in message
 
 
 def test_of_several_worlds_the_first():
