@@ -20,9 +20,9 @@ from sdf_pose_bridge.geometry.units import Units
 from sdf_pose_bridge.names import printable, shortened
 from sdf_pose_bridge.scene.scene import Scene
 
-_WIDEST_NAME, _NARROWEST_NAME, _NARROWEST_COLUMN = 80, 6, 12
-_WIDEST_WITH_DIGITS = 80
-"""Largest width of a table with more digits than usual."""
+_WIDEST_NAME, _NARROWEST_NAME = 80, 6
+_USUAL_COLUMNS = 80
+"""Only a narrower table has more digits, and only in a narrower terminal it has no kinds."""
 _ROUNDING = 0.05
 """Largest error of the smallest length, relative to it."""
 _SHORT_KINDS = {'optical frame': 'optical', 'particle_emitter': 'emitter'}
@@ -64,26 +64,25 @@ def print_table(labels: Sequence[str], rows: Sequence[TableRow], remark: str = '
     rows, widths, kind_width, width = _laid_out(labels, rows, remark)
     columns = _columns()
     room = columns - kind_width - sum(widths) - len(widths) - 1
-    if _narrowest(rows) > room:
+    if columns < _USUAL_COLUMNS:
+        # In a narrow terminal, names and branches tell more than kinds.
         rows = [row._replace(branches=row.branches[::2]) for row in rows]
-    if _narrowest(rows) > room:
-        # Names and branches tell more than kinds.
         room, kind_width = room + kind_width, 0
-    width = min(width, _WIDEST_NAME, max(room, _NARROWEST_COLUMN))
+    longest_remark = max(len(f'  {row.remark}'.rstrip()) for row in rows)
+    width = min(width, _WIDEST_NAME, max(
+        room - min(longest_remark, columns // 3), 2 * _NARROWEST_NAME))
     taken: dict[str, str] = {}
     for name, kind, values, note, branches, is_bold, remark in rows:
         branches = branches[max(len(branches) - width + min(len(name), _NARROWEST_NAME), 0):]
         longest = width - len(branches)
         name = f'{_fitted(name, longest, taken):{longest}}'
         kind = f'{kind:{kind_width}}'[:kind_width]
-        text = f'{" ".join(map(str.rjust, values, widths))}  {printable(remark)}'.rstrip()
-        if not kind and not text:
-            name = name.rstrip()
-        print(
+        print((
             styled(branches, DIM, sys.stdout)
             + (styled(name, BOLD, sys.stdout) if is_bold else name)
-            + (f'  {styled(kind, _COLORS.get(kind.rstrip(), ""), sys.stdout)}{text}'
-               if text else f'  {kind}').rstrip())
+            + f'  {styled(kind, _COLORS.get(kind.rstrip(), ""), sys.stdout) if kind else ""}'
+            f'{" ".join(map(str.rjust, values, widths))}  '
+            + shortened(remark, max(room - width - 2, _NARROWEST_NAME))).rstrip())
         if note:
             below = branches.translate(BELOW) + '  '
             note = shortened(printable(note), columns - len(below))
@@ -98,7 +97,7 @@ def _laid_out(
         row._replace(
             name=printable(row.name[-2 * _WIDEST_NAME:]),
             kind=f'{_SHORT_KINDS.get(row.kind, row.kind)}  ', branches=_branches(row.branches),
-            values=row.values or ('',) * len(labels))
+            values=row.values or ('',) * len(labels), remark=printable(row.remark))
         for row in (TableRow('frame', 'kind', labels, remark=remark), *rows)]
     widths = [max(map(len, column)) for column in zip(*(row.values for row in found), strict=True)]
     return (found, widths, max(len(row.kind) for row in found),
@@ -107,12 +106,6 @@ def _laid_out(
 
 def _columns() -> int:
     return shutil.get_terminal_size().columns if sys.stdout.isatty() else 2 * _WIDEST_NAME
-
-
-def _narrowest(rows: Sequence[TableRow]) -> int:
-    """Return the narrowest column of names in which names tell something."""
-    return max(_NARROWEST_COLUMN, *(
-        len(row.branches) + min(len(row.name), _NARROWEST_NAME) for row in rows))
 
 
 def _fitted(name: str, longest: int, taken: dict[str, str]) -> str:
@@ -198,7 +191,7 @@ def _rows_with_poses(
     needed = next(digits for digits in count(least)
                   if abs(round(shortest, digits) - shortest) <= _ROUNDING * shortest)
     _, widths, kind_width, width = _laid_out(units.labels, found)
-    room = min(_columns(), _WIDEST_WITH_DIGITS) - (
+    room = min(_columns(), _USUAL_COLUMNS) - (
         width + kind_width + sum(widths) + len(widths) + 1)
     return rows(min(needed, least + max(room // 3, 0)), angle_digits)
 

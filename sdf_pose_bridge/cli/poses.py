@@ -7,7 +7,6 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 import math
-from typing import NamedTuple
 
 import numpy as np
 
@@ -63,41 +62,34 @@ def run(options: argparse.Namespace) -> int:
         options, 'elements', ('file', 'world', 'kind', 'name', *Pose._fields), _elements)
 
 
-class _Position(NamedTuple):
-    name: str
-    value: float
-    unit: str
-    """``rad``, ``deg``, ``m`` or ``mm``; empty if it is not given."""
-
-
-def _position_from_text(text: str) -> _Position:
+def _position_from_text(text: str) -> tuple[str, float, str]:
+    """Return a name, a number, and a unit or an empty text."""
     name, _, value = text.rpartition('=')
     unit = next((unit for unit in ('rad', 'deg', 'mm', 'm') if value.endswith(unit)), '')
-    return _Position(name, float(value.removesuffix(unit)), unit)
+    return name, float(value.removesuffix(unit)), unit
 
 
 def _at_positions(
-    scene: Scene, given: Sequence[_Position], warnings: list[SdfWarning],
+    scene: Scene, given: Sequence[tuple[str, float, str]], warnings: list[SdfWarning],
 ) -> Scene:
     """Return the scene with its joints at given positions; warn of doubtful units."""
     motion = JointMotion(scene, tf_parents_from_scene(scene))
-    values = {position.name: position.value for position in given}
-    selection = JointPositions(scene, motion).selection([position.name for position in given])
+    values = {name: value for name, value, _ in given}
+    selection = JointPositions(scene, motion).selection([name for name, *_ in given])
     doubts, names = [], dict[int, str]()
     for row, index in zip(selection.rows.tolist(), selection.dofs.tolist(), strict=True):
         (name, value, unit), dof = given[row], motion.dofs[index]
-        place = scene.place(dof.joint.element)
-        if index in names:
-            msg = f'"{names[index]}" and "{name}" are one joint, which has one position'
-            raise JointPositionError(msg, place)
-        names[index] = name
+        place, lower, upper = scene.place(dof.joint.element), dof.axis.lower, dof.axis.upper
         units = {'rad': 1.0, 'deg': math.radians(1.0)} if dof.rad_per_unit else {
             'm': 1.0, 'mm': 1e-3}
-        if unit and unit not in units:
+        msg = ''
+        if index in names:
+            msg = f'"{names[index]}" and "{name}" are one joint, which has one position'
+        elif unit and unit not in units:
             msg = f'the position of "{name}" is in {" or ".join(units)}, not in {unit}'
+        if msg:
             raise JointPositionError(msg, place)
-        values[name] = value * units.get(unit, 1.0)
-        lower, upper = dof.axis.lower, dof.axis.upper
+        names[index], values[name] = name, value * units.get(unit, 1.0)
         is_doubtful = abs(value) > 2.0 * math.pi if math.isinf(upper - lower) else (
             not lower <= value <= upper and lower <= math.radians(value) <= upper)
         if dof.rad_per_unit and not unit and is_doubtful:

@@ -216,8 +216,8 @@ def _change_of_origin(
     """Find the change of the ``<origin>`` of a joint of URDF that moves an element to a pose."""
     sources, path = Sources(), scene.place(element).file
     sources.add_path(path)
-    sources.add_tree(path, text.root, {})
-    robot = robot_from_tree(text.root, sources, is_included=scene.urdf_root is None)
+    sources.add_tree(path, text.elements[0], {})
+    robot = robot_from_tree(text.elements[0], sources, is_included=scene.urdf_root is None)
     name = scene.own_name(element)
     scope = scene.names[element].removesuffix(name)
     for joint in _joints_to_move(name, robot.parent_joints):
@@ -225,7 +225,7 @@ def _change_of_origin(
         parent = scene.index(scope + joint.parent, world=scene.world_of(element)) if (
             scene.has(scope + joint.parent)) else int(scene.parents[element])
         origin = first_child(joint.xml, 'origin')
-        number = text.number(joint.xml if origin is None else origin)
+        number = text.elements.index(joint.xml if origin is None else origin)
         with contextlib.suppress(PoseNotSetError):
             change: PoseChange = make(
                 parent, joint.origin, partial(text.with_origin, number), text.line(number))

@@ -30,7 +30,7 @@ from sdf_pose_bridge.sdformat.urdf.values import pose_from_xyz_rpy
 from sdf_pose_bridge.sdformat.values import number_from_word
 from sdf_pose_bridge.sdformat.versions import Version, version_from_text
 from sdf_pose_bridge.sdformat.xml_file import START_TAG, xml_from_bytes
-from sdf_pose_bridge.sdformat.xml_tree import text_of, words_of, written_tag, XmlElement
+from sdf_pose_bridge.sdformat.xml_tree import text_of, words_of, written_tag
 
 _FIRST_WITH_POSE = Version(1, 4)
 _TEXT_AFTER_COMMENTS = re.compile(rb'(?:\s*<!--.*?-->)*([^<]*)', re.DOTALL)
@@ -52,7 +52,7 @@ class PoseText:
     def __init__(self, content: bytes, path: str) -> None:
         self._path, place = path, Place(path)
         file = xml_from_bytes(content, path)
-        self.root = root = file.root
+        root = file.root
         self.is_urdf = root.tag == 'robot'
         for warning in file.warnings:
             msg = f'{warning.message}; correct this before a pose is set in the file'
@@ -65,10 +65,11 @@ class PoseText:
         self._encoding = file.encoding
         # With its byte order mark.
         self._text = content.decode(self._encoding).encode()
-        self._elements = list(root.iter(etree.Element))
+        self.elements = list(root.iter(etree.Element))
+        """The elements by their numbers."""
         self._tags = [
             (tag.start(), tag.end(1)) for tag in START_TAG.finditer(self._text) if tag[1]]
-        if len(self._tags) != len(self._elements) or self._encoded(self._text) != content:
+        if len(self._tags) != len(self.elements) or self._encoded(self._text) != content:
             msg = f'the text cannot be changed in its encoding, {self._encoding}'
             raise PoseNotSetError(msg, place)
 
@@ -93,16 +94,11 @@ class PoseText:
             raise PoseNotSetError(msg, Place(self._path))
         return line - 1
 
-    def number(self, xml: XmlElement) -> int:
-        """Return the number of an element of :attr:`root`."""
-        return self._elements.index(xml)
-
     def is_plain_urdf(self, element: int) -> bool:
         """Return whether neither xacro nor an attribute for a quaternion says the numbers."""
-        tags = map(written_tag, self._elements)
-        return (not self._path.endswith('.xacro') and not any(
-            tag.startswith('xacro:') for tag in tags)
-            and self._elements[element].get('quat_xyzw') is None)
+        return self.elements[element].get('quat_xyzw') is None and not (
+            self._path.endswith('.xacro')
+            or any(written_tag(each).startswith('xacro:') for each in self.elements))
 
     def line(self, element: int) -> int:
         """Return the line of an element in the unchanged text."""
@@ -152,7 +148,7 @@ class PoseText:
 
     def with_origin(self, element: int, pose: Pose, tolerance: float) -> FileChange:
         """Change an ``<origin>`` of URDF, or insert one into a joint as :meth:`with_new_pose`."""
-        xml = self._elements[element]
+        xml = self.elements[element]
         is_new = xml.tag != 'origin'
         old = [word for name in ('xyz', 'rpy') for word in words_of(xml.get(name, '0 0 0'))]
         numbers = [number_from_word(word)[0] for word in old]
@@ -184,10 +180,10 @@ class PoseText:
 
     def _step(self, element: int) -> bytes:
         """Return the indentation of an element relative to its parent; if none, two spaces."""
-        parent = next(self._elements[element].iterancestors())
+        parent = next(self.elements[element].iterancestors())
         own, outer = (
             line[:len(line) - len(line.lstrip(b' \t'))]
-            for each in (element, self._elements.index(parent))
+            for each in (element, self.elements.index(parent))
             for line in [self._text[:self._tags[each][0]].rpartition(b'\n')[2]])
         return own.removeprefix(outer) or b'  '
 
@@ -195,7 +191,7 @@ class PoseText:
         end = self._tags[element][1]
         if not self._is_closed(end):
             return self._change(end + 1, end + 1, content)
-        end_tag = f'</{written_tag(self._elements[element])}>'.encode()
+        end_tag = f'</{written_tag(self.elements[element])}>'.encode()
         return self._change(end - 1, end + 1, b'>' + content + end_tag)
 
     def _change(self, begin: int, end: int, new: bytes) -> FileChange:
@@ -204,7 +200,7 @@ class PoseText:
         return FileChange(self._path, self._encoding, *map(self._encoded, parts))
 
     def _format(self, element: int) -> PoseFormat:
-        xml = self._elements[element]
+        xml = self.elements[element]
         if written_tag(xml) != 'pose':
             msg = f'the pose is not written as <pose>, but in <{written_tag(xml)}>'
             raise PoseNotSetError(msg, self._place(element))
@@ -217,7 +213,7 @@ class PoseText:
         if not self._is_closed(end):
             text = _TEXT_AFTER_COMMENTS.match(self._text, end + 1)
             words = list(_WORD.finditer(self._text, *text.span(1))) if text else []
-        if [word[0].decode() for word in words] != words_of(text_of(self._elements[element])):
+        if [word[0].decode() for word in words] != words_of(text_of(self.elements[element])):
             msg = 'the numbers of the pose are not written as plain text'
             raise PoseNotSetError(msg, self._place(element))
         return words

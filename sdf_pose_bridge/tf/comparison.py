@@ -172,7 +172,7 @@ def _old_of_new(old: Scene, new: Scene) -> dict[int, int]:
     old_children, new_children = (
         by_key(scene, range(len(scene.names)), lambda scene, index: scene.parents.item(index))
         for scene in (old, new))
-    waiting = [*zip(new_children[-1], old_children[-1], strict=False)]
+    waiting = [*zip(new_children.get(-1, []), old_children.get(-1, []), strict=False)]
     found = dict(waiting)
     while waiting:
         index, before = waiting.pop()

@@ -109,3 +109,9 @@ def test_a_missing_file_is_an_error(run_main):
 def test_a_tolerance_is_a_distance(diff, text):
     done = diff('', '', '--tolerance', text)
     assert (done.returncode, f'"{text}" is not a distance' in done.stderr) == (2, True)
+
+
+def test_files_without_elements_have_no_difference(run_main, files):
+    (files / 'new.sdf').write_text('<sdf version="1.9"/>')
+    assert run_main('diff', 'new.sdf', 'new.sdf').returncode == 0
+    assert run_main('diff', 'new.sdf', 'good.sdf').returncode == 1

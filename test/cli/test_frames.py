@@ -15,11 +15,14 @@ from sdf_texts import element, fixed_joint, LINK, model_file, posed
 @pytest.mark.parametrize(('columns', 'arguments'), [
     (60, 'tree {cell}'), (80, 'tree {cell}'), (120, 'tree {cell}'), (80, 'tree --scope {cell}'),
     (60, 'poses {cell}'),
-    (80, 'poses {cell} --radians'), (80, 'poses --mm {cell}'), (80, 'diff {moved} {cell}')])
+    (80, 'poses {cell} --radians'), (80, 'poses --mm {cell}'), (80, 'diff {moved} {cell}'),
+    (60, 'diff {moved} {cell}')])
 def test_lines_are_as_long_as_those_of_the_terminal(on_terminal, files, columns, arguments):
     cell = ROOT / 'examples/work_cell.sdf'
     moved = files / 'moved.sdf'
-    moved.write_text(cell.read_text().replace('<pose>-1.2 -1.5 0', '<pose>-1.2 -1.6 0'))
+    moved.write_text(cell.read_text().replace(
+        '<pose>-1.2 -1.5 0', '<pose>-1.23456 -1.6 0').replace(
+        'attached_to="fixture::nest"', 'attached_to="gear_housing::grasp"'))
     text = on_terminal(columns, *(
         each.format(cell=cell, moved=moved) for each in arguments.split()))
     lines = [
@@ -47,7 +50,7 @@ def table_of(text):
 def test_lengths_have_the_digits_that_the_smallest_one_needs(on_terminal, files, columns, x):
     (files / 'chain.sdf').write_text(CHAIN)
     lines = table_of(on_terminal(columns, 'poses', 'chain.sdf', '--kinds', 'link,frame'))
-    assert [line.split()[2] for line in lines[1:]] == x
+    assert [line.split()[-6] for line in lines[1:]] == x
 
 
 def test_digits_that_are_asked_for(run_main, files):
