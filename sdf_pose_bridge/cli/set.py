@@ -85,7 +85,7 @@ def run(options: argparse.Namespace) -> int:
         print_message(options.command, note)
     given = Pose(*poses_from_rows([numbers], source)[0].tolist())
     if doubt := source.doubt(numbers, is_written=not options.force, dashes='--'):
-        units = (source.angle, source.length if source.position else None)
+        units = (not is_position and source.angle, source.position and source.length)
         keep = ' '.join(f'--{unit.text}' for unit in units if unit) if '?' in doubt else '--force'
         msg = f'{doubt} ({keep} writes them as they are)'
         raise CommandError(msg)

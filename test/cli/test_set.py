@@ -138,6 +138,13 @@ def test_three_numbers_are_the_position(set_pose, path, numbers, written):
     assert f'<pose>{written} 0 0 0.785398163' in path.read_text()
 
 
+def test_three_numbers_are_asked_about_a_unit_of_lengths(set_pose, refused, path):
+    assert refused('f', '300', '0', '0').endswith(
+        'did you mean --mm? (--metres writes them as they are)')
+    set_pose('f', '--metres', '300', '0', '0')
+    assert load(path).pose('f')[:3] == (300.0, 0.0, 0.0)
+
+
 def test_three_numbers_of_a_part_leave_its_rotation(set_pose, path):
     set_pose('m', '--by', 'l', '--format', 'rpy_degrees', '0', '0', '45')
     set_pose('m', '--by', 'l', '--relative-to', 'f', '0', '4', '0')
