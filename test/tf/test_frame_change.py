@@ -6,6 +6,7 @@ from matrices import assert_close
 import numpy as np
 import pytest
 from sdf_texts import model_file
+import urdf_texts
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.errors import SdfError
@@ -70,3 +71,30 @@ def test_a_frame_does_not_move_in_one_that_moves_with_it(change):
 def test_a_file_that_is_not_what_is_published(change):
     with pytest.raises(SdfError, match='the file has changed since it was read'):
         change('mark', Pose(), published=b'other')
+
+
+ROBOT = urdf_texts.robot(
+    ''.join(map(urdf_texts.link, ('base', 'arm', 'tool')))
+    + urdf_texts.joint('turn', 'base', 'arm', 'continuous', '<axis xyz="0 0 1"/>')
+    + urdf_texts.joint('mount', 'arm', 'tool', 'fixed', urdf_texts.origin('1 0 0')))
+
+
+@pytest.mark.parametrize(('frame', 'asked', 'origin', 'moved'), [
+    ('tool', Pose(0.0, 2.0, 0.0, 0.0, 0.0, 0.5 ** 0.5, 0.5 ** 0.5), '2 0 0', []),
+    # The joint itself has turned.
+    ('arm', Pose(0.5, 0.0, 0.0, 0.0, 0.0, 0.5 ** 0.5, 0.5 ** 0.5), '0.5 0 0', ['tool'])])
+def test_the_origin_of_a_urdf_whose_joint_has_turned(tmp_path, frame, asked, origin, moved):
+    path = tmp_path / 'robot.urdf'
+    path.write_text(ROBOT)
+    request = LoadRequest(str(path), '', tf_options=TfOptions(use_joint_states=True, kinds=None))
+    loaded = loaded_scene_from_request(request)
+    positions = loaded.joint_positions
+    positions.update(positions.selection(['turn']), np.array([np.pi / 2]))
+    found = write_frame_change(
+        request, fingerprint_of_scene(loaded.scene), frame, asked, 'base', positions,
+        dry_run=False)
+    assert found.moved_frames == moved
+    written = f'<origin xyz="{origin}" rpy="0 0 0"/>'
+    assert path.read_text() == (
+        ROBOT.replace('<origin xyz="1 0 0" rpy="0 0 0"/>', written) if frame == 'tool' else
+        ROBOT.replace('"continuous">', f'"continuous">{written}'))
