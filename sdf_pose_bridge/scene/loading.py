@@ -23,7 +23,6 @@ from sdf_pose_bridge.sdformat.include.expansion import IncludeExpansion
 from sdf_pose_bridge.sdformat.include.merge import ModelByItself
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS, Limits, MissingInclude
-from sdf_pose_bridge.sdformat.poses import text_from_pose
 from sdf_pose_bridge.sdformat.reader import elements_from_tree
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
@@ -159,11 +158,8 @@ def _model_by_itself(root: XmlElement, sources: Sources) -> ModelByItself | None
         sources.problems.add_part(part.problems)
         return None
     model = 1  # element 0 is the implicit root
-    place = elements.place_of_pose(model)
-    warnings = [each for each in part.problems.warnings if each.place == place]
-    sources.problems.extend(warnings)
     link = int(graph.canonical_links[model])
     canonical_link = '' if link == NO_ELEMENT else (
         graph.names[link].removeprefix(f'{graph.names[model]}{SEPARATOR}'))
     pose = Pose(*poses_in_references(elements, graph)[model].tolist())
-    return ModelByItself(canonical_link, text_from_pose(pose), bool(warnings))
+    return ModelByItself(canonical_link, pose)

@@ -84,6 +84,7 @@ def elements_from_tree(
     :return: the elements. An element with an error is kept if possible, so that further errors are
         found and none only follows from the first.
     """
+    sources.known_places = {}
     if sources.may_hold_scoped_names:
         check_scoped_names(root, sources)
     return ElementReader(sources, shapes=shapes, plugins=plugins).elements(root)

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 import copy
+from itertools import takewhile
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -30,6 +31,7 @@ from sdf_pose_bridge.sdformat.xml_tree import (
     XmlElement,
 )
 
+_MOST_PLACES_KNOWN = 1000
 _NUMBER_OF_ELEMENTS = etree.XPath('count(descendant-or-self::*)')
 
 PARAMS_TAG = 'experimental:params'
@@ -98,6 +100,9 @@ class Sources:
         self._origins: dict[XmlElement, Origin] = {}
         self._lines: dict[XmlElement, int] = {}
         """The lines of elements for which lxml has another line or none."""
+        self.known_places: dict[XmlElement | None, tuple[str, str]] | None = None
+        """The files and paths of elements around errors, as any number of equal errors is placed;
+        None while trees change."""
 
     def with_own_problems(self) -> Sources:
         """Return the same sources with separate problems, which are added to the load later."""
@@ -188,10 +193,14 @@ class Sources:
 
     def place(self, xml: XmlElement) -> Place:
         """Return the file and the line of an element, and its path in the tree."""
-        steps = [f'/{_step(each)}' for each in with_ancestors(xml)]
-        return Place(
-            self.origin(xml).pose_file or self.path(xml), self.line(xml),
-            ''.join(reversed(steps)))
+        known = {} if self.known_places is None else self.known_places
+        if len(known) > _MOST_PLACES_KNOWN:
+            known.clear()
+        for each in reversed([*takewhile(lambda each: each not in known, with_ancestors(xml))]):
+            file, path = known.get(each.getparent(), ('', ''))
+            known[each] = self.origin(each).file or file, f'{path}/{_step(each)}'
+        file, path = known.pop(xml)  # others need its ancestors only
+        return Place(self.origin(xml).pose_file or file, self.line(xml), path)
 
     def copy_of(self, xml: XmlElement, user: XmlElement, **changes: Any) -> XmlElement:
         """Copy an element with its content, counted, and its places and other facts."""

@@ -171,6 +171,10 @@ PARTS: dict[str, Callable[[int], str]] = {
     'links in deep models': lambda n: nested(n, DEEP, each(n, '<link name="d#"/>')),
     'errors in deep models': lambda n: nested(
         n, DEEP, each(n, '<link name="x#"><visual/></link>')),
+    'equal errors in deep models': lambda n: nested(
+        n, DEEP, f'<link name="x">{"<visual/>" * n}</link>'),
+    'equal errors in elements of deep models': lambda n: nested(
+        n, DEEP, '<link><visual/></link>' * n),
     'scoped names in deep models': lambda n: nested(
         n, '<model name="b::c#">', each(n, '<link name="a::b#"/>')),
     'references into deep models': lambda n: nested(n, DEEP, '') + each(
@@ -241,6 +245,7 @@ INCLUDED = {
     'includes': (NAMED, ''),
     'merges': (MERGED.replace('n#', 'n'), ''),
     'merges with names': (MERGED, ''),
+    'merges with poses': (MERGED.replace('<uri>', '<pose># 0 0 0 0 0</pose><uri>'), ''),
     'merges into one model': (
         f'<model name="m">|{include("<name>n#</name>", MERGE)}|</model>', ''),
     'text behind a pose of a merged model': (
@@ -301,6 +306,11 @@ FILES: dict[str, Callable[[int], Files]] = {
     'name spaces of an included model': lambda n: {
         'scene.sdf': world_file(each(20, NAMED)),
         'part.sdf': model(each(n, '<p#:x/>'), each(n, ' xmlns:p#="u"'))},
+    'equal errors of an included deep model': lambda n: {
+        'scene.sdf': world_file(NAMED),
+        'part.sdf': model(PARTS['equal errors in deep models'](n))},
+    'equal errors below a long name': lambda n: {'scene.sdf': model(
+        f'<model name="{"x" * 10 * n}"><link name="l">{"<visual/>" * n}</link></model>')},
     'text behind an included model': lambda n: {
         **FILES['includes'](n),
         'part.sdf': each(n, model('').replace('</sdf>', '|text |</sdf>'))},

@@ -61,7 +61,8 @@ def test_errors_in_a_long_name_are_short(tmp_path):
 
 
 @pytest.mark.parametrize(('content', 'is_checked_again'), [
-    ('', False), ('<name>n#</name>', False), ('<pose># 0 0 0 0 0</pose>', True)])
+    ('', False), ('<name>n#</name>', False), ('<pose># 0 0 0 0 0</pose>', False),
+    ('<plugin name="p#" filename="f"/>', True)])
 def test_each_check_of_a_merged_model_counts(tmp_path, content, is_checked_again):
     include = f'<include merge="true"><uri>leaf.sdf</uri>{content}</include>'
     merges = ''.join(
@@ -125,6 +126,10 @@ GROWING = {
     'unknown references of visuals': 8000,
     'long names beyond ASCII': 2000,
     'errors in deep models': 12_000,
+    'equal errors in deep models': 20_000,
+    'equal errors in elements of deep models': 10_000,
+    'equal errors of an included deep model': 20_000,
+    'equal errors below a long name': 20_000,
     'deep placements at the end of a chain': 5000,
     'flags of an old axis': 20_000,
     'old name of many scopes': 20_000,

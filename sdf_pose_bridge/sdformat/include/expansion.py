@@ -214,7 +214,9 @@ class IncludeExpansion:
             self._sources.problems.extend(error.errors)
             return _IncludedFile(None, None)
         # Its copies are not checked again, except what includes change in them.
+        self._sources.known_places = {}
         self._reader.is_valid(document.root, definition_of('sdf'))
+        self._sources.known_places = None
         if next(document.root.iter('include'), None) is not None:
             self._sources.composed_trees.add(document.root)
             self._expand_in(document.root, files)
@@ -241,10 +243,11 @@ class IncludeExpansion:
     # The place of the included element
 
     def _merge(self, include: XmlElement, top: XmlElement, chosen: XmlElement) -> None:
-        """Merge a copy of a model; includes that differ in the name share the check by itself."""
+        """Merge a copy of a model; names and poses of includes share the check by itself."""
         name = attribute_of(top, 'name')
         shared = chosen, self._sources.path(include), *(
-            etree.tostring(each, with_tail=False) for each in include if each.tag != 'name')
+            etree.tostring(each, with_tail=False)
+            for each in include if each.tag not in ('name', 'pose'))
         keys = [shared, (*shared, name)]
         if is_reserved(name) or SEPARATOR in name:
             del keys[0]
@@ -256,8 +259,8 @@ class IncludeExpansion:
                 # Its elements are read twice.
                 self._sources.count_copy(root, include)
                 known = self._model_by_itself(root)
-                # Errors and warnings may contain the name.
-                key = keys[-1 if known is None or known.has_warnings else 0]
+                # Errors may contain the name.
+                key = keys[-1 if known is None else 0]
                 self._merged_models[key] = known
             return self._merged_models[key]
 

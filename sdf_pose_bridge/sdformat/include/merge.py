@@ -12,11 +12,14 @@ proxy frame. Source: ``insertIncludedElement`` in libsdformat's ``parser.cc``.
 from __future__ import annotations
 
 from collections.abc import Callable
+import contextlib
 from typing import NamedTuple, TypeAlias
 
 from lxml import etree
+import numpy as np
 
 from sdf_pose_bridge.errors import MergeIncludeError
+from sdf_pose_bridge.geometry.poses import Pose, pose_product
 from sdf_pose_bridge.names import (
     MODEL_FRAME,
     PROXY_END,
@@ -29,6 +32,14 @@ from sdf_pose_bridge.sdformat.grammar import (
     Kind,
     PARTS_OF_MODEL,
 )
+from sdf_pose_bridge.sdformat.poses import (
+    pose_doubts,
+    pose_format_of,
+    pose_numbers_from_text,
+    poses_from_numbers,
+    PoseTextError,
+    text_from_pose,
+)
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import (
     attribute_of,
@@ -36,6 +47,7 @@ from sdf_pose_bridge.sdformat.xml_tree import (
     described,
     first_child,
     is_foreign_itself,
+    text_of,
     value_of,
     XmlElement,
 )
@@ -48,15 +60,13 @@ class ModelByItself(NamedTuple):
 
     canonical_link: str
     """The name of its canonical link in it; empty if it has none."""
-    pose: str
-    """The text of a ``<pose>``: its model frame, in the frame that its own one is relative to."""
-    has_warnings: bool
-    """Whether there are warnings about that pose."""
+    pose: Pose
+    """Its model frame in its placement frame."""
 
 
 ModelCheck: TypeAlias = Callable[[XmlElement], ModelByItself | None]
 """
-Checks a model file by itself, given its ``sdf`` element.
+Checks a model file by itself, given its ``sdf`` element, in which the model has no pose.
 
 If the file is not valid, it reports that and returns None.
 """
@@ -108,16 +118,20 @@ def _proxy_frame(
     relative_to = '' if pose is None else attribute_of(pose, 'relative_to')
     proxy_pose = etree.Element('pose', relative_to=relative_to or (
         MODEL_FRAME if parent.tag == 'model' else WORLD_FRAME))
-    if pose is not None:
-        sources.set_source(proxy_pose, pose)
-        # By itself, the model cannot be relative to a frame.
-        pose.attrib.pop('relative_to', None)
     root = etree.Element('sdf')
     root.append(model)
+    placed = Pose()
+    if pose is not None:
+        sources.set_source(proxy_pose, pose)
+        with contextlib.suppress(PoseTextError):  # it is an error of its file
+            placed = _placed(pose, sources)
+    # The rest does not depend on the pose, and is the same for many includes.
+    for each in [*child_elements(model, 'pose')]:
+        model.remove(each)
     known = model_by_itself(root)
     if known is None:
         return None
-    proxy_pose.text = known.pose
+    proxy_pose.text = text_from_pose(pose_product(placed, known.pose))
     name = f'{PROXY_START}{attribute_of(model, "name")}{PROXY_END}'
     canonical_link = attribute_of(model, 'canonical_link') or known.canonical_link
     proxy = etree.Element('frame', {'name': name, 'attached_to': canonical_link})
@@ -129,6 +143,15 @@ def _proxy_frame(
         is_named_by_include=first_child(include, 'name') is not None,
         placement_frame=name if placement == MODEL_FRAME else placement)
     return proxy
+
+
+def _placed(xml: XmlElement, sources: Sources) -> Pose:
+    """Read a pose that was checked with its file, and warn if it may be a mistake."""
+    text, pose_format = text_of(xml), pose_format_of(xml)
+    numbers = np.array([pose_numbers_from_text(text, pose_format)[0]])
+    for _, doubt in pose_doubts([text], numbers, pose_format):
+        sources.warning(xml, doubt)
+    return Pose(*poses_from_numbers(numbers, pose_format)[0].tolist())
 
 
 def _replace_model_frame(
