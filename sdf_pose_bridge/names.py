@@ -8,7 +8,6 @@ import bisect
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 import difflib
-from itertools import count
 import re
 
 SEPARATOR = '::'
@@ -78,11 +77,17 @@ def scoped_name(scope: str, name: str) -> str:
     return f'{scope}{SEPARATOR}{name}' if scope else name
 
 
-def unused_name(name: str, used: set[str], separator: str = '_') -> str:
-    """Return a name, with a number behind it if it is used, and add it to the used ones."""
-    candidates = (f'{name}{separator}{number}' if number else name for number in count())
-    unused = next(each for each in candidates if each not in used)
-    used.add(unused)
+def unused_name(name: str, used: dict[str, int], separator: str = '_') -> str:
+    """
+    Return a name, with a number behind it if it is used, and add it to the used ones.
+
+    :param used: the used names, with the last number that was behind each of them, at first 0.
+    """
+    unused = name
+    while unused in used:
+        used[name] += 1
+        unused = f'{name}{separator}{used[name]}'
+    used[unused] = 0
     return unused
 
 

@@ -5,6 +5,8 @@
 import string
 import time
 
+from hypothesis import given
+from hypothesis import strategies as st
 import pytest
 
 from sdf_pose_bridge.names import (
@@ -15,6 +17,7 @@ from sdf_pose_bridge.names import (
     quoted_names,
     scoped_name,
     shortened,
+    unused_name,
 )
 
 
@@ -103,3 +106,14 @@ def test_index_finds_names_with_other_separators_and_cases():
     assert index.nearest('Robot_5/Link-6') == 'robot_5::link_6'
     assert index.nearest('roboter_5::link_6') == 'robot_5::link_6'
     assert index.nearest('nothing') == ''
+
+
+@given(st.lists(st.sampled_from(['a', 'a_1', 'a_2', 'a_1_1', 'b']), max_size=20), st.booleans())
+def test_a_used_name_gets_the_first_number_that_is_free(names, is_used_before):
+    taken = ['a_1'] if is_used_before else []
+    used = dict.fromkeys(taken, 0)
+    for name in names:
+        candidates = [name, *(f'{name}_{number}' for number in range(1, 30))]
+        expected = next(each for each in candidates if each not in taken)
+        assert unused_name(name, used) == expected
+        taken.append(expected)

@@ -122,7 +122,7 @@ odometry. Of several poses of one model, those that are first here are followed.
 """
 GROUPS = ('joints', 'poses', 'odometry', 'sensors', 'commands')
 _ABBREVIATIONS = {'~': '/model/{M}', '@': '/world/{W}/model/{P}/{C}/sensor/{S}'}
-_DELETED, _LAST_LEVEL = re.compile('@|~|//|:='), re.compile(r'[^/]+/\.\./')
+_DELETED, _LAST_LEVEL = re.compile('@|~|//|:='), re.compile(r'(?<![^/])[^/]+/\.\./')
 
 
 class GazeboTopic(NamedTuple):

@@ -76,7 +76,7 @@ def bridged_topics(scene: Scene, groups: Collection[str], world: str = '') -> li
                    'of the world in Gazebo, and a model file has no world; set --world-name to '
                    'the one in which the model is spawned')
             raise ElementMissingError(msg, scene.place(owner.element))
-    bridged, used = [], set[str]()
+    bridged, used = [], dict[str, int]()
     for (name, _), owners in found.items():
         element, free_model, _, topic, values = owners[0]
         prefix, below, model = '', name[1:], values.get('model', '')

@@ -131,8 +131,8 @@ class _RobotMaker:
             *np.where(scene.kinds[elements] == Kind.LINK, elements, -1).tolist(), -1]
         self._tf_parents = tf_parents_from_scene(scene)
         self._motion = JointMotion(scene, self._tf_parents, options.frame_names)
-        self._link_names = {self._tree.root_frame, *self._tree.frame_ids}
-        self._joint_names: set[str] = set()
+        self._link_names = dict.fromkeys((self._tree.root_frame, *self._tree.frame_ids), 0)
+        self._joint_names: dict[str, int] = {}
         self._dofs: dict[tuple[int, int | None], tuple[str, Mimic | None]] = {}
         """For each degree of freedom the name of its joint, and the joint that it follows."""
         self._leaders: dict[str, UrdfMimic | str] = {}

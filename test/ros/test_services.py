@@ -3,11 +3,15 @@
 """Answers of the services: refused with a sentence, or given, and never raised."""
 
 import array
+import contextlib
+from functools import partial
 import math
 import threading
 
 from deadline import DEADLINE_S, spin_until
+from folders import ROOT
 from geometry_msgs.msg import PoseStamped
+from growth.turns import fault_of_growth
 import numpy as np
 import pytest
 from rclpy.clock import Clock
@@ -270,6 +274,47 @@ def test_a_wrong_request_is_refused(ask, path, fields, reason):
     with pytest.raises(SdfError, match=reason):
         ask(**fields)
     assert path.read_text() == ARM
+
+
+GROWING = {
+    ('ConvertPoses', 'from_format'): lambda n, _: convert_poses([0.0] * 6, 'x' * n),
+    ('ConvertPoses', 'to_format'): lambda n, _: convert_poses([0.0] * 6, to_format='x' * n),
+    ('ConvertPoses', 'values'): lambda n, _: convert_poses([0.1] * 2 * n),
+    ('LookupPose', 'frame'): lambda n, _: look_up('a::' * (n // 3)),
+    ('LookupPose', 'relative_to'): lambda n, _: look_up('m::l', 'a::' * (n // 3)),
+    ('SetPose', 'frame'): lambda n, ask: ask('a::' * (n // 3)),
+}
+"""Requests with a field of about n characters."""
+
+
+def test_each_field_of_a_request_that_has_no_fixed_size_has_a_row():
+    types = {(service.__name__, name): kind
+             for service in (ConvertPoses, ConvertRotation, LookupPose, SetPose)
+             for name, kind in service.Request.get_fields_and_field_types().items()}
+    assert {*types.values()} <= {
+        'boolean', 'uint8', 'string', 'sequence<double>', 'geometry_msgs/Vector3',
+        'geometry_msgs/Quaternion', 'geometry_msgs/PoseStamped'}
+    assert {key for key, kind in types.items() if kind.startswith(('string', 'sequence'))} == {
+        *GROWING}
+
+
+def test_each_service_is_one_of_those():
+    folder = ROOT / 'sdf_pose_bridge_interfaces' / 'srv'
+    names = {path.stem for path in folder.glob('*.srv')}
+    assert names == {'ConvertPoses', 'ConvertRotation', 'LookupPose', 'SetPose'}
+
+
+@pytest.mark.parametrize(('service', 'field'), GROWING)
+def test_time_grows_with_a_request_and_not_faster(ask, service, field):
+    def request(n):
+        with contextlib.suppress(SdfError):
+            GROWING[service, field](n, ask)
+
+    n = 60_000
+    plain = model_file(''.join(posed('link', f'l{i}', '0 1 2 0 0 0') for i in range(n // 60)))
+    fault = fault_of_growth(
+        partial(request, n), partial(request, n // 2), partial(load_text, plain))
+    assert not fault, fault
 
 
 def test_a_text_that_is_no_file_is_refused():

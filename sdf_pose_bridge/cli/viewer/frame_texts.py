@@ -182,11 +182,11 @@ def html_of_tree(
         children.setdefault(parent, []).append(index)
     waiting = [(index, 0) for other in (NO_PARENT, ROOT_IS_PARENT)
                for index in reversed(children.get(other, ()))]
-    rows: list[str] = []
+    rows, wanted = list[str](), search.lower()
     while waiting and len(rows) < MOST_ROWS:
         index, depth = waiting.pop()
         frame_id, kind, below = ids[index], shown.labels[index], children.get(index, ())
-        if search.lower() in frame_id.lower() and not is_name_of_proxy(
+        if wanted in frame_id.lower() and not is_name_of_proxy(
                 frame_id.rpartition('/')[2]):
             text = frame_id if search else shown.short_names[index]
             rows.append(

@@ -159,7 +159,7 @@ def robot_from_tree(root: XmlElement, sources: Sources, *, is_included: bool) ->
             sources.warning(link.xml, f'link "{name}" is left out: its joints form a cycle')
     name = root.get('name', '')
     if not is_included:
-        used = {*links, *(joint.name for joint in parent_joints.values())}
+        used = dict.fromkeys((*links, *(joint.name for joint in parent_joints.values())), 0)
         for child, joint in parent_joints.items():
             if joint.name in links:
                 new_name = unused_name(f'{joint.name}{JOINT_SUFFIX}', used, '')

@@ -1,0 +1,47 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The time of each command grows with what it is given, and not faster."""
+
+import argparse
+import contextlib
+from functools import partial
+import io
+
+from growth.commands import plain, ROWS
+from growth.turns import fault_of_growth
+import pytest
+
+from sdf_pose_bridge.cli.main import main, new_parser
+
+
+def test_each_command_has_a_row():
+    (commands,) = (action.choices for action in new_parser()._actions
+                   if isinstance(action, argparse._SubParsersAction))
+    assert {*ROWS} == {*commands}
+    assert all(ROWS.values())
+
+
+@pytest.mark.parametrize(('command', 'row'), [
+    (command, row) for command, rows in ROWS.items() for row in rows])
+def test_time_grows_with_what_a_command_is_given(tmp_path, monkeypatch, command, row):
+    if command == 'view':
+        pytest.importorskip('viser', reason='needs viser')
+    n, run_of = ROWS[command][row]
+    runs = [run_of(n), run_of(n // 2)]
+    text = ''.join((*runs[0].arguments, *runs[0].files.values(), runs[0].stdin))
+    # A plain file has as many elements or bytes; a link with its pose has 60.
+    runs.append(plain(command, max(text.count('<') - text.count('</'), len(text) // 30) // 2))
+    folders = [tmp_path / name for name in ('hostile', 'half', 'plain')]
+    for folder, run in zip(folders, runs, strict=True):
+        folder.mkdir()
+        for name, content in run.files.items():
+            (folder / name).write_text(content)
+
+    def start(run, folder):
+        monkeypatch.chdir(folder)
+        monkeypatch.setattr('sys.stdin', io.StringIO(run.stdin))
+        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+            assert main([command, *run.arguments]) < 2
+
+    fault = fault_of_growth(*map(partial(partial, start), runs, folders))
+    assert not fault, fault
