@@ -161,5 +161,5 @@ def _model_by_itself(root: XmlElement, sources: Sources) -> ModelByItself | None
     link = int(graph.canonical_links[model])
     canonical_link = '' if link == NO_ELEMENT else (
         graph.names[link].removeprefix(f'{graph.names[model]}{SEPARATOR}'))
-    pose = Pose(*poses_in_references(elements, graph)[model].tolist())
-    return ModelByItself(canonical_link, pose)
+    return ModelByItself(
+        canonical_link, Pose(*poses_in_references(elements, graph)[model].tolist()))

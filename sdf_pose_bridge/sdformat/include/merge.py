@@ -16,7 +16,6 @@ import contextlib
 from typing import NamedTuple, TypeAlias
 
 from lxml import etree
-import numpy as np
 
 from sdf_pose_bridge.errors import MergeIncludeError
 from sdf_pose_bridge.geometry.poses import Pose, pose_product
@@ -32,14 +31,7 @@ from sdf_pose_bridge.sdformat.grammar import (
     Kind,
     PARTS_OF_MODEL,
 )
-from sdf_pose_bridge.sdformat.poses import (
-    pose_doubts,
-    pose_format_of,
-    pose_numbers_from_text,
-    poses_from_numbers,
-    PoseTextError,
-    text_from_pose,
-)
+from sdf_pose_bridge.sdformat.poses import pose_and_doubts, PoseTextError, text_from_pose
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import (
     attribute_of,
@@ -47,7 +39,6 @@ from sdf_pose_bridge.sdformat.xml_tree import (
     described,
     first_child,
     is_foreign_itself,
-    text_of,
     value_of,
     XmlElement,
 )
@@ -124,7 +115,9 @@ def _proxy_frame(
     if pose is not None:
         sources.set_source(proxy_pose, pose)
         with contextlib.suppress(PoseTextError):  # it is an error of its file
-            placed = _placed(pose, sources)
+            placed, doubts = pose_and_doubts(pose)
+            for doubt in doubts:
+                sources.warning(pose, doubt)
     # The rest does not depend on the pose, and is the same for many includes.
     for each in [*child_elements(model, 'pose')]:
         model.remove(each)
@@ -143,15 +136,6 @@ def _proxy_frame(
         is_named_by_include=first_child(include, 'name') is not None,
         placement_frame=name if placement == MODEL_FRAME else placement)
     return proxy
-
-
-def _placed(xml: XmlElement, sources: Sources) -> Pose:
-    """Read a pose that was checked with its file, and warn if it may be a mistake."""
-    text, pose_format = text_of(xml), pose_format_of(xml)
-    numbers = np.array([pose_numbers_from_text(text, pose_format)[0]])
-    for _, doubt in pose_doubts([text], numbers, pose_format):
-        sources.warning(xml, doubt)
-    return Pose(*poses_from_numbers(numbers, pose_format)[0].tolist())
 
 
 def _replace_model_frame(

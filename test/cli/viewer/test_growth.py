@@ -11,6 +11,7 @@ from growth.families import each, model, REPEATED
 from growth.turns import fault_of_growth
 import pytest
 
+pytest.importorskip('viser', reason='needs viser')
 from sdf_pose_bridge.cli.viewer.frame_texts import html_of_tree
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.geometry.formats import PoseFormatError
