@@ -92,21 +92,22 @@ def _doubts_about_ids(
     options = TfOptions(
         frame_names=FrameNames.SCOPED if is_spawned else FrameNames.AUTO, kinds=None)
     try:
-        frame_ids = {'', *tf_tree_from_scene(scene, options).frame_ids}
+        known = ['', *tf_tree_from_scene(scene, options).frame_ids]
     except SdfError:  # it is told already
         return
+    doubted: dict[str, tuple[str, int]] = {}
     for bridged in topics:
         for element, *_, topic, values in bridged.owners:
             sensor = scene_of_gazebo.sensors.get(element)
-            found = [sensor.frame_id, sensor.older_frame_id] if sensor else [
-                values.get('child_frame_id') or values.get('robot_base_frame', '')
-            ] if topic.odometry_frame else []
-            for frame_id in {each.replace(SEPARATOR, '/') for each in found} - frame_ids:
-                hint = hint_from_names(frame_id, sorted(frame_ids))
-                frame_ids.add(frame_id)
-                msg = (f'messages on {bridged.gz_name} have the frame id "{frame_id}", which is '
-                       f'none of the node{hint}')
-                yield SdfWarning('WARNING', msg, scene_of_gazebo.place(element))
+            for each in (sensor.frame_id, sensor.older_frame_id) if sensor else (
+                    values.get('child_frame_id') or values.get('robot_base_frame', ''),
+            ) if topic.odometry_frame else ():
+                doubted.setdefault(each.replace(SEPARATOR, '/'), (bridged.gz_name, element))
+    for frame_id in sorted(doubted.keys() - known):
+        gz_name, element = doubted[frame_id]
+        yield SdfWarning('WARNING', (
+            f'messages on {gz_name} have the frame id "{frame_id}", which is none of the node'
+            f'{hint_from_names(frame_id, known)}'), scene_of_gazebo.place(element))
 
 
 def _lines(bridged: BridgedTopic) -> Iterator[str]:

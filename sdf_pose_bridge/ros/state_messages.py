@@ -282,27 +282,21 @@ class KnownEffects:
 
     def hint(self, child: str) -> str:
         """Return the end of a message about a child frame id that names no model."""
-        frame_ids = self._frames.tree.frame_ids
-        longer = [each for each in frame_ids if child and each.endswith(f'/{child}')]
-        return f'; did you mean "{longer[0]}"?' if longer else hint_from_names(child, self.models)
+        for frame_id in self._frames.tree.frame_ids if child else ():
+            if frame_id.endswith(f'/{child}'):
+                return f'; did you mean "{frame_id}"?'
+        return hint_from_names(child, self.models)
 
     def odometry_in(self, frame_id: str, dof: int, source: StateSource) -> Odometry | None:
-        """
-        Find the odometry of plugins that a message has.
-
-        Another topic than those of the plugins in this frame has that of the first plugin.
-
-        :param dof: the free model.
-        :return: the odometry, or None if no plugin sends it in this frame.
-        """
+        """Find the odometry of a free model in a frame: that of the topic, or else the first."""
         topics = self._meanings.get((dof, frame_id), {})
         found = self._odometry.get((dof, frame_id, source.name))
         if found is None and len(topics) > 1:
-            names = names_in_line([*topics.values()])
             source.warn_once('odometry', [frame_id], lambda: (
                 f'{source.name} has poses in {names_in_line([frame_id])}, the frame of the '
-                f'odometry of several plugins, and is none of their topics {names}; its poses '
-                'count as on the first of these; give each plugin a frame of its own in the file'))
+                'odometry of several plugins, and is none of their topics '
+                f'{names_in_line([*topics.values()])}; its poses count as on the first of these; '
+                'give each plugin a frame of its own in the file'))
         return found or self._odometry.get((dof, frame_id, ''))
 
     def pose_frame(

@@ -3,9 +3,7 @@
 """
 Warn of what Gazebo ignores, or what only some of its supported releases read.
 
-These are Harmonic (libsdformat 14, gz-sim 8), Ionic (15, 9) and Jetty (16, 10). Sources:
-``SystemLoader.cc`` and ``normalizePluginFilename`` of gz-sim, ``Sensor.cc`` and
-``CameraSensor.cc`` of gz-sensors, which reads the pose of the sensor alone.
+Sources: ``SystemLoader.cc`` of gz-sim 8 to 10, ``Sensor.cc``, ``CameraSensor.cc`` of gz-sensors.
 """
 
 from __future__ import annotations

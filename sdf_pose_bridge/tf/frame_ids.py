@@ -173,11 +173,11 @@ def frame_ids_with_sensors(
                 del frame_ids[sensor]
                 continue
         first_sensors.setdefault(frame_ids[sensor], sensor)
-    details = {each: scene.sensors[each] for each in sensor_names}
     older_ids = {
         sensor: naming.frame_id_from_name(
             naming.name_from_frame_id(each.older_frame_id) or names[sensor])
-        for sensor, each in details.items() if each.older_frame_id != each.frame_id}
+        for sensor, each in scene.sensors.items()
+        if sensor in names and each.older_frame_id != each.frame_id}
     return frame_ids, sensor_names, optical_names, older_ids
 
 

@@ -121,15 +121,11 @@ def older_frames_of_sensors(
     older_ids: Mapping[int, str], used: Container[str], nearest_frames: Indices, scene: Scene,
 ) -> list[Frame]:
     """
-    Make a frame for each further frame id in messages of sensors.
+    Make a frame for each further frame id of sensors, unless it is used already.
 
-    :param older_ids: these ids, as :func:`frame_ids_with_sensors` makes them.
-    :param used: the ids of all other frames.
     :param nearest_frames: the frame of each element, or the one that it is in.
     """
-    sensors: dict[str, int] = {}
-    for sensor, frame_id in older_ids.items():
-        sensors.setdefault(frame_id, sensor)
+    sensors = {frame_id: sensor for sensor, frame_id in reversed([*older_ids.items()])}
     return [
         Frame(frame_id, sensor, nearest_frames.item(sensor), scene.pose_of(sensor))
         for frame_id, sensor in sensors.items() if frame_id not in used]
