@@ -59,8 +59,10 @@ def run(options: argparse.Namespace) -> int:
     scene_of_gazebo = _scene_of_gazebo(scene, options)
     topics = bridged_topics(scene_of_gazebo, options.only, world)
     doubts = [each.doubt for each in topics if each.doubt]
-    print_problems((), (*doubts_about_frames(scene), *doubts, *_doubts_about_ids(
-        topics, scene_of_gazebo, scene, is_spawned=bool(options.model_name))), sys.stderr)
+    tf_options = TfOptions(
+        frame_names=FrameNames.SCOPED if options.model_name else FrameNames.AUTO)
+    print_problems((), (*doubts_about_frames(scene, tf_options), *doubts, *_doubts_about_ids(
+        topics, scene_of_gazebo, scene, tf_options._replace(kinds=None))), sys.stderr)
     if options.node:
         parameters = {
             'sdf_file': '' if path == STANDARD_INPUT else str(Path(path).absolute()),
@@ -86,11 +88,9 @@ def _scene_of_gazebo(scene: Scene, options: argparse.Namespace) -> Scene:
 
 
 def _doubts_about_ids(
-    topics: Sequence[BridgedTopic], scene_of_gazebo: Scene, scene: Scene, *, is_spawned: bool,
+    topics: Sequence[BridgedTopic], scene_of_gazebo: Scene, scene: Scene, options: TfOptions,
 ) -> Iterator[SdfWarning]:
     """Warn of frame ids in messages that the node does not publish."""
-    options = TfOptions(
-        frame_names=FrameNames.SCOPED if is_spawned else FrameNames.AUTO, kinds=None)
     try:
         known = ['', *tf_tree_from_scene(scene, options).frame_ids]
     except SdfError:  # it is told already

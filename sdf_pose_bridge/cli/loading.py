@@ -72,11 +72,13 @@ def scene_of(
     return scene
 
 
-def doubts_about_frames(scene: Scene) -> tuple[SdfWarning, ...]:
-    """Return the warnings about the frames that the node publishes by default."""
+def doubts_about_frames(
+    scene: Scene, options: TfOptions | None = None,
+) -> tuple[SdfWarning, ...]:
+    """Return the warnings about the frames that the node publishes, by default without options."""
     # An error of the tree is a warning, as with other parameters the tree may be valid.
     try:
-        return tf_tree_from_scene(scene).warnings
+        return tf_tree_from_scene(scene, options).warnings
     except SdfError as error:
         return tuple(
             SdfWarning(each.code, f'{each.message}; by default, the node rejects this', each.place)

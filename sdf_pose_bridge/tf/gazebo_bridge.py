@@ -124,8 +124,10 @@ def node_parameters(
     sources = sorted(
         (each for each in topics if each.places_model),
         # Before Harmonic 8.10, PosePublisher needs this option for the pose of its own model, too.
-        key=lambda each: (each.topic.is_of_wheels, each.topic.group == 'poses' and not is_true(
-            each.owners[0].values, 'publish_nested_model_pose'), GROUPS.index(each.topic.group)))
+        key=lambda each: (
+            bool(each.doubt), each.topic.is_of_wheels, each.topic.group == 'poses' and not is_true(
+                each.owners[0].values, 'publish_nested_model_pose'),
+            GROUPS.index(each.topic.group)))
     followed = {each.owners[0].free_model: each for each in reversed(sources)}
     # A pattern must not name the second source of another model.
     others = {each.pattern for each in sources

@@ -82,6 +82,16 @@ def test_robots_with_one_frame_id_are_told(run_main):
             in run_main('gz_bridge', 'two.sdf').stderr)
 
 
+@pytest.mark.parametrize(('arguments', 'is_told'), [([], True), (['--model-name', 'a'], False)])
+def test_the_frame_id_of_a_link_elsewhere_is_told_unless_it_has_the_name_of_the_robot(
+        run_main, files, arguments, is_told):
+    sensor = ('<sensor name="s" type="gpu_lidar"><pose>1 0 0 0 0 0</pose><topic>scan</topic>'
+              '<gz_frame_id>l</gz_frame_id></sensor>')
+    (files / 'robot.sdf').write_text(model_file(f'<link name="l">{sensor}</link>'))
+    errors = run_main('gz_bridge', 'robot.sdf', *arguments).stderr
+    assert ('is that of a frame 1 m' in errors) is is_told
+
+
 def test_any_name_is_quoted(parsed):
     assert parsed('odd.sdf', '--only', 'odometry')[1]['gz_topic_name'] == (
         f'/model/{ODD.replace(" ", "_")}/odometry')

@@ -153,6 +153,12 @@ def test_of_plugins_in_two_models_of_one_body_the_true_one_is_followed():
         '/{model}/two/odometry']
 
 
+@pytest.mark.parametrize('systems', ['DiffDrive OdometryPublisher', 'OdometryPublisher DiffDrive'])
+def test_a_topic_of_two_plugins_is_not_followed_if_the_true_one_has_another(systems):
+    text = world_file(model('a', ''.join(map(plugin, systems.split()))))
+    assert parameters_of(text)[1] == ['/{model}/odometry_with_covariance']
+
+
 def test_nobody_follows_the_odometry_of_what_cannot_move():
     static = f'<model name="a"><static>true</static><link name="l"/>{plugin("DiffDrive")}</model>'
     assert parameters_of(world_file(static))[1] == []
