@@ -172,7 +172,10 @@ def _old_of_new(old: Scene, new: Scene) -> dict[int, int]:
     old_children, new_children = (
         by_key(scene, range(len(scene.names)), lambda scene, index: scene.parents.item(index))
         for scene in (old, new))
-    waiting = [*zip(new_children.get(-1, []), old_children.get(-1, []), strict=False)]
+    # In a world, frame ids have the names of models.
+    waiting = [
+        pair for pair in zip(new_children.get(-1, []), old_children.get(-1, []), strict=False)
+        if new.kinds[pair[0]] == old.kinds[pair[1]]]
     found = dict(waiting)
     while waiting:
         index, before = waiting.pop()

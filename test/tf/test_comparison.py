@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from sdf_texts import joint, LINK, model_file, posed, TWO_LINKS
+from sdf_texts import joint, LINK, model_file, posed, TWO_LINKS, world_file
 
 from sdf_pose_bridge import load_text, SdfError, UnknownFrameError
 from sdf_pose_bridge.tf.comparison import Change, differences_of_scenes
@@ -108,6 +108,13 @@ def test_worlds_are_told_apart_by_their_order():
         old, load_text(sdf(second + first)))] == ['moved', 'moved']
     assert [each.change.value for each in differences_of_scenes(
         old, load_text(sdf(first)))] == ['removed']
+
+
+def test_a_model_in_a_world_has_other_frame_ids():
+    model = '<model name="m"><link name="l"/></model>'
+    scenes = load_text(f'<sdf version="1.6">{model}</sdf>'), load_text(world_file(model))
+    assert {each.change for each in differences_of_scenes(*scenes)} == {
+        Change.ADDED, Change.REMOVED}
 
 
 def test_an_unknown_frame_is_refused():
