@@ -41,9 +41,10 @@ def html_of_data(name: str, value: str) -> str:
     return f'<meta data-{name}="{html.escape(value)}">'
 
 
-def html_of_copy_button(text: str) -> str:
-    """Return a button that copies a text."""
-    return f'<button data-copy="{html.escape(text)}">copy</button>'
+def html_of_copy_button(text: str, label: str = '') -> str:
+    """Return a button that copies a text, with a label of the text for those who do not see."""
+    name = html.escape(f'copy {label or text}')
+    return f'<button data-copy="{html.escape(text)}" aria-label="{name}">copy</button>'
 
 
 def html_of_frame(shown: ShownScene, frame: int, reference: int, units: Units) -> str:
@@ -81,7 +82,7 @@ def html_of_frame(shown: ShownScene, frame: int, reference: int, units: Units) -
         'Franka matrix': str(franka),
     }
     forms = ''.join(
-        f'<div>{html_of_copy_button(text)}{label}<code>{html.escape(text)}</code></div>'
+        f'<div>{html_of_copy_button(text, label)}{label}<code>{html.escape(text)}</code></div>'
         for label, text in copied.items())
     return f'<div class="description">{"<br>".join(lines)}{forms}</div>'
 
@@ -189,17 +190,21 @@ def html_of_tree(
         if wanted in frame_id.lower() and not is_name_of_proxy(
                 frame_id.rpartition('/')[2]):
             text = frame_id if search else shown.short_names[index]
+            name, sign = escaped(text), _FOLDS[frame_id in folded] if below and not search else ''
             rows.append(
-                f'<div style="padding-left:{0 if search else min(depth, 20)}em">'
-                f'<button tabindex=-1 data-ask="fold {index}">'
-                f'{_FOLDS[frame_id in folded] if below and not search else ""}</button>'
-                f'<b title="{kind}">{_SIGNS.get(kind, "+")}</b>'
-                f'<button tabindex=-1 data-ask="select {index}"'
-                f'{" class=selected" if frame_id == selected else ""}>{escaped(text)}</button>'
-                f'<button tabindex=-1 data-ask="hide {index}" title="show or hide">'
+                f'<div role=none style="padding-left:{0 if search else min(depth, 20)}em">'
+                f'<button tabindex=-1 data-ask="fold {index}" aria-label="fold {name}"'
+                f' aria-pressed={str(frame_id in folded).lower()}>{sign}</button>'
+                f'<b title="{kind}" aria-hidden=true>{_SIGNS.get(kind, "+")}</b>'
+                f'<button tabindex=-1 data-ask="select {index}" role=treeitem'
+                f' title="{escaped(frame_id)}" aria-label="{name}, {kind}" aria-level={depth + 1}'
+                f'{" class=selected aria-selected=true" if frame_id == selected else ""}>'
+                f'{name}</button><button tabindex=-1 data-ask="hide {index}" title="show or hide"'
+                f' aria-label="hide {name}" aria-pressed={str(frame_id in hidden).lower()}>'
                 f'{_EYES[frame_id in hidden]}</button></div>')
         if search or frame_id not in folded:
             waiting += [(child, depth + 1) for child in reversed(below)]
     if not search and len(rows) < len(ids):
         rows.append(f'{len(ids) - len(rows)} more, to be found by the search')
-    return f'<div class="rows" tabindex=0 data-search={quoteattr(search)}>{"".join(rows)}</div>'
+    return ('<div class="rows" role=tree aria-label=frames tabindex=0 '
+            f'data-search={quoteattr(search)}>{"".join(rows)}</div>')

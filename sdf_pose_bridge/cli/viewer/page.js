@@ -175,6 +175,7 @@
   let shownInStrip = '', selected;
   const SEARCH = 'div:has(+ div > .rows) input';
   const FIELD = 'div:has(> .frame-of-numbers) ~ div input';
+  const FOLDER = '.mantine-Paper-root > .mantine-Paper-root:first-child';
   // The element with the keyboard, the last field, and the element that shall have the keyboard.
   let focused, field, awaited;
   addEventListener('focusin', ({target}) => {
@@ -199,7 +200,25 @@
     const at = others.findIndex(other => isAcross ? other === button : row.contains(other));
     others[at + (/Left|Up/.test(key) ? -1 : 1)]?.focus();
   };
+  // viser's labels do not belong to their controls, and its folders open by a click alone.
+  const nameControls = () => {
+    for (const label of document.querySelectorAll('p > label')) {
+      label.closest('.mantine-Flex-root').querySelectorAll('[role=slider], input').forEach(
+        control => control.setAttribute('aria-label', label.textContent));
+    }
+    for (const [found, attributes] of Object.entries({
+      canvas: {role: 'img', 'aria-label': 'frames and shapes'},
+      'svg:not([aria-hidden])': {'aria-hidden': true},
+      '.mantine-CloseButton-root': {'aria-label': 'close'},
+      '[data-dock-header] .mantine-ActionIcon-root': {'aria-label': 'settings of the view'},
+      [FOLDER]: {role: 'button', tabindex: 0},
+    })) for (const element of document.querySelectorAll(found)) {
+      Object.entries(attributes).forEach(([name, value]) => element.setAttribute(name, value));
+      if (found === FOLDER) element.ariaExpanded = element.nextSibling?.ariaHidden !== 'true';
+    }
+  };
   const update = () => {
+    nameControls();
     if (isToBeDark && asked()) { isToBeDark = false; tell('dark'); }
     const row = document.querySelector('.rows .selected'), rows = row?.closest('.rows');
     if (row && row.dataset.ask !== selected) {
@@ -218,11 +237,16 @@
     }
     updateFocus(row);
   };
-  new MutationObserver(update).observe(document, {childList: true, subtree: true});
+  new MutationObserver(update).observe(
+    document, {childList: true, subtree: true, attributeFilter: ['aria-hidden']});
   // Behind the controls and before viser, whose camera also turns by the arrow keys.
   addEventListener('DOMContentLoaded', () => document.body.addEventListener('keydown', event => {
     const {target, key} = event;
     awaited = null;
+    if (/^(Enter| )$/.test(key) && target.matches(FOLDER)) {
+      event.preventDefault();
+      target.click();
+    }
     if (!target.closest('[role=slider], input, textarea, .rows, .strip')) return;
     event.stopPropagation();
     // Otherwise the same key presses the button that gets the keyboard.

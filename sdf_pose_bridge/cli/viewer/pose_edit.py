@@ -52,7 +52,8 @@ class PoseEdit:
         self._errors: list[str] = []
         self._refusal = ''
         """The reason why a typed text is rejected."""
-        self._undone: PoseChange | None = None
+        self._undone: list[PoseChange] = []
+        """The changes that take back the writes of this page, the last one at the end."""
         # In pixels: with lines of this width, 24 of them react to the pointer.
         self._gizmo = client.scene.add_transform_controls(
             '/gizmo', 110.0, line_width=6.0, fixed=True, depth_test=False, visible=False)
@@ -133,8 +134,8 @@ class PoseEdit:
             actions['write anyway' if self._question else 'write to file'] = self._write_pose
         if self.pose is not None or self._refusal:
             actions['cancel'] = partial(self._set_pose, None)
-        if self._undone is not None:
-            actions['undo the last write'] = partial(self._write, self._undone, None)
+        if self._undone:
+            actions['undo the last write'] = partial(self._write, self._undone[-1], None)
         return actions
 
     @property
@@ -146,9 +147,9 @@ class PoseEdit:
         old = self._overwritten if self.pose is None else self._target[1]
         if old is not None:
             text += html_of_difference(old, self._pose, self._reference, self._shown_for[2])
-        if self._undone is not None:
-            path = Path(self._undone.file.path)
-            text += f'<div>written to {escaped(path.name)}:{self._undone.line}</div>'
+        if self._undone:
+            path = Path(self._undone[-1].file.path)
+            text += f'<div>written to {escaped(path.name)}:{self._undone[-1].line}</div>'
         buttons = (f'<button data-ask="{label}">{label}</button>' for label in self.actions)
         # Before anything is changed, they are only the reason why nothing can be.
         errors = html_of_lines('errors' if self.pose else 'errors_of_setting', self._errors)
@@ -235,7 +236,8 @@ class PoseEdit:
             self._notes = tuple(map(str, error.errors))
             return
         shown = self._shown.at(self._shown.positions, change.scene)
-        self._undone, self._overwritten = undone, self._target[1] if undone else None
+        self._undone = [*self._undone, undone] if undone else self._undone[:-1]
+        self._overwritten = self._target[1] if undone else None
         self._target = self._target[0], shown.pose_of(self._frame)
         self._set_pose(None)
         self._show_file(shown)

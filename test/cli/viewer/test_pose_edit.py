@@ -249,6 +249,20 @@ def test_what_is_written_is_shown_beside_what_it_replaced(edit, written):
     assert table(edit) == []
 
 
+def test_each_write_is_undone_the_last_one_first(edit, written):
+    scene = scene_with(Pose())
+    show(edit, scene=scene, pose=Pose())
+    for z in (0.0, 1.0):
+        edit._gizmo.position = (0.0, 0.0, z + 1.0)
+        show(edit, scene=scene_with(Pose(z=z)), pose=Pose(z=z))
+        edit.actions['write to file']()
+    assert [pose.z for pose in written] == [1.0, 2.0]
+    for is_left in (True, False):
+        edit.actions['undo the last write']()
+        assert ('undo the last write' in edit.actions) is is_left
+    assert [pose.z for pose in written[2:]] == [2.0, 1.0]
+
+
 def test_table_of_a_written_pose_goes_with_the_frame(edit):
     show(edit)
     drag(edit, 1.0)
