@@ -153,7 +153,7 @@ def _cure(path: str) -> str:
         return '; name a file in it'
     if '$' in path or path.startswith('~'):
         return '; $ and ~ stay as they are in quotes and in parameter files'
-    if path.lstrip().startswith('<'):
+    if re.match(r'\s*<', path):
         return '; this is the text of a file, which load_text reads'
     if '://' in path:
         return '; this is a URI, and not a path'

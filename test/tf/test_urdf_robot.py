@@ -17,6 +17,7 @@ from random_scenes import random_scenes
 
 from sdf_pose_bridge import Kind, load_text, scene_at_positions, SdfError
 from sdf_pose_bridge.errors import UrdfNotMadeError
+from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS
 from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.joint_positions import JointPositions, UnreportedJoints
@@ -29,8 +30,8 @@ MODEL = f'<model name="{{}}">{LINK}</model>'
 TWO_LINKS = '<link name="a"/><link name="b"><pose>1 0 0 0 0 0</pose></link>'
 
 
-def robot_of(text, **options):
-    return robot_from_scene(load_text(text, shapes=True), TfOptions(**options))
+def robot_of(text, limits=DEFAULT_LIMITS, **options):
+    return robot_from_scene(load_text(text, shapes=True, limits=limits), TfOptions(**options))
 
 
 def joint(joint_type, content='', name='j', parent='a', child='b', pose=''):
@@ -73,9 +74,10 @@ def test_what_has_no_urdf_is_refused(text, model, reason):
 def test_names_that_would_fill_the_memory_are_refused():
     links = ''.join(f'<link name="{i}"/>' for i in range(450))
     text = model_file(links).replace('"m"', f'"{"m" * 30_000}"')
-    robot_of(text)
+    limits = DEFAULT_LIMITS._replace(characters=20_000_000)
+    robot_of(text, limits)
     with pytest.raises(UrdfNotMadeError, match='characters together'):
-        robot_of(text, frame_names=FrameNames.SCOPED)
+        robot_of(text, limits, frame_names=FrameNames.SCOPED)
 
 
 # One tree
