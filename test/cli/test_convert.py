@@ -189,7 +189,7 @@ def test_a_text_of_a_form_is_a_format_of_input_too(convert):
         assert convert(*words)[:2] == (1, '')
     _, out, _ = convert(
         '--from', 'sdf_rpy_degrees', *'100000', '--times', text, '--to', 'sdf_rpy')
-    assert numbers(out) == [2.0, 2.0, 3.0, 0.0, 0.0, 0.5]
+    assert numbers(out) == pytest.approx([2.0, 2.0, 3.0, 0.0, 0.0, 0.5])
 
 
 def test_options_may_follow_the_numbers(convert):
