@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""What releases of Gazebo read in different ways."""
+"""Warnings of elements that releases of Gazebo read in different ways."""
 
 import pytest
 from sdf_texts import link_with, model_file, write_files
