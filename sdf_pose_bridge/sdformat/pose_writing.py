@@ -113,7 +113,7 @@ class PoseText:
         try:
             pose_format = self._format(element)
             text = ' '.join(word[0].decode() for word in self._words(element))
-            return Pose(*pose_from_text(text, pose_format))
+            return pose_from_text(text, pose_format)[0]
         except PoseTextError as error:
             raise PoseNotSetError(str(error), self._place(element)) from error
 

@@ -27,13 +27,7 @@ from sdf_pose_bridge.sdformat.values import (
     number_from_word,
     plain_numbers_from_text,
 )
-from sdf_pose_bridge.sdformat.xml_tree import (
-    attribute_of,
-    text_of,
-    WHITE_SPACE,
-    words_of,
-    XmlElement,
-)
+from sdf_pose_bridge.sdformat.xml_tree import attribute_of, WHITE_SPACE, words_of, XmlElement
 
 _SHORTEST_QUATERNION = 1e-9
 """A quaternion with a smaller norm has no meaningful direction."""
@@ -85,22 +79,14 @@ def pose_format_of(xml: XmlElement) -> PoseFormat:
     return pose_format
 
 
-def pose_from_text(text: str, pose_format: PoseFormat) -> Sequence[float]:
+def pose_from_text(text: str, pose_format: PoseFormat) -> tuple[Pose, list[str]]:
     """
     Convert one text.
 
     :param text: a pose as written; a blank text is the identity.
-    :return: x y z in metres, unit quaternion x y z w.
+    :return: the pose, and the reasons why it may be a mistake.
     :raises PoseTextError: if it is not a pose.
     """
-    numbers = np.array([pose_numbers_from_text(text, pose_format)[0]])
-    pose: list[float] = poses_from_numbers(numbers, pose_format)[0].tolist()
-    return pose
-
-
-def pose_and_doubts(xml: XmlElement) -> tuple[Pose, list[str]]:
-    """Read one ``<pose>``, and why it may be a mistake; raise a PoseTextError if it is no pose."""
-    text, pose_format = text_of(xml), pose_format_of(xml)
     numbers = np.array([pose_numbers_from_text(text, pose_format)[0]])
     doubts = [doubt for _, doubt in pose_doubts([text], numbers, pose_format)]
     return Pose(*poses_from_numbers(numbers, pose_format)[0].tolist()), doubts

@@ -70,6 +70,6 @@ def odometry_from_scene(
 def _offset(parameters: Mapping[str, str], name: str) -> Pose:
     texts = (parameters.get(f'{each}_{name}', '0 0 0') for each in ('xyz', 'rpy'))
     try:
-        return Pose(*pose_from_text(' '.join(texts), EULER_RPY))
+        return pose_from_text(' '.join(texts), EULER_RPY)[0]
     except PoseTextError:
         return Pose()

@@ -12,7 +12,7 @@ import needs
 import pytest
 
 from sdf_pose_bridge import load
-from sdf_pose_bridge.geometry.poses import distance_and_angle, Pose, pose_inverse, pose_product
+from sdf_pose_bridge.geometry.poses import distance_and_angle, pose_inverse, pose_product
 from sdf_pose_bridge.sdformat.poses import EULER_RPY, pose_from_text
 
 
@@ -135,7 +135,7 @@ def shifted(topic, pose):
     """Add the offsets, which Fortress does not know (OdometryPublisher.cc:402 of gz-sim 10)."""
     if not topic.startswith('/shifted/'):
         return pose
-    offset, of_frame = (Pose(*pose_from_text(each, EULER_RPY)) for each in (
+    offset, of_frame = (pose_from_text(each, EULER_RPY)[0] for each in (
         '0.3 0.1 0.2 0.5 0.4 0.3', '3 2 1 0.1 0.2 0.3'))
     return pose_product(pose_inverse(of_frame), pose_product(pose, offset))
 

@@ -31,7 +31,12 @@ from sdf_pose_bridge.sdformat.grammar import (
     Kind,
     PARTS_OF_MODEL,
 )
-from sdf_pose_bridge.sdformat.poses import pose_and_doubts, PoseTextError, text_from_pose
+from sdf_pose_bridge.sdformat.poses import (
+    pose_format_of,
+    pose_from_text,
+    PoseTextError,
+    text_from_pose,
+)
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import (
     attribute_of,
@@ -39,6 +44,7 @@ from sdf_pose_bridge.sdformat.xml_tree import (
     described,
     first_child,
     is_foreign_itself,
+    text_of,
     value_of,
     XmlElement,
 )
@@ -115,7 +121,7 @@ def _proxy_frame(
     if pose is not None:
         sources.set_source(proxy_pose, pose)
         with contextlib.suppress(PoseTextError):  # it is an error of its file
-            placed, doubts = pose_and_doubts(pose)
+            placed, doubts = pose_from_text(text_of(pose), pose_format_of(pose))
             for doubt in doubts:
                 sources.warning(pose, doubt)
     # The rest does not depend on the pose, and is the same for many includes.
