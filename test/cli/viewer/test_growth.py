@@ -50,7 +50,7 @@ def test_time_grows_with_what_is_typed_and_not_faster(field):
         with contextlib.suppress(PoseFormatError):
             call()
 
-    n = 40_000
+    n = 80_000
     calls = FIELDS[field](n), FIELDS[field](n // 2), partial(load_text, links(n // 60))
     fault = fault_of_growth(*(partial(read, call) for call in calls))
     assert not fault, fault
