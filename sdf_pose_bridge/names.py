@@ -78,11 +78,7 @@ def scoped_name(scope: str, name: str) -> str:
 
 
 def unused_name(name: str, used: dict[str, int], separator: str = '_') -> str:
-    """
-    Return a name, with a number behind it if it is used, and add it to the used ones.
-
-    :param used: the used names, with the last number that was behind each of them, at first 0.
-    """
+    """Return a name, numbered if it is used, and add it; ``used`` has the last number of each."""
     unused = name
     while unused in used:
         used[name] += 1
