@@ -33,8 +33,10 @@ SECOND_CALL_S = 1.0
 LONGEST_CALL_S = 5.0
 """Longest time to wait for an answer."""
 
-UNFILTERED_PERIOD_S = 60.0
-"""Time before the next call if the simulator answers with more entities than it is asked for."""
+AFTER_EXCESS = (60.0, 'the next call is in 60 s'), (
+    math.inf, 'it is not called again until a parameter is set or the file is read again')
+"""Time before the next call, also in words, after the first answer with more entities than were
+asked for, and after the second one. Each answer may block the executor."""
 
 MOST_CHARACTERS_OF_FILTER = 1_000_000
 """Largest length of a filter; for more names all entities are asked for."""
@@ -82,7 +84,7 @@ class Simulator(StateSource):
         self._costs_s: deque[float] = deque(maxlen=_COSTS)
         # The models that the last answer lacks, the last two answers lack, and that are logged.
         self._missing = self._to_tell = self._told = list[str]()
-        self._excesses, self._followed_others = 0, list[str]()
+        self._has_exceeded, self._followed_others = False, list[str]()
         self._kept: set[str] = set()
         self._client: Any = None
         try:
@@ -108,7 +110,7 @@ class Simulator(StateSource):
         self._positions, self._settings = positions, settings
         before, self._followed_others = self._followed_others, [*positions.others]
         if self._followed_others == before:  # else nobody but the simulator is the reason
-            self._excesses, self._due = 0, 0.0
+            self._has_exceeded, self._due = False, 0.0
         self._models, self._known = (
             {settings.simulator_entity.replace(MODEL_FIELD, name): model
              for model in reversed(models) for name in (model.replace(SEPARATOR, '/'), model)}
@@ -180,15 +182,9 @@ class Simulator(StateSource):
             is_too_much = names > (
                 len(self._models) if self._request.filters.filter
                 else len(self._known) + MOST_OTHERS)
-            self._excesses += is_too_much
-            if not is_too_much:
-                period_s, when = self._period_s(names), ''
-            elif self._excesses < 2:  # each answer may block the executor
-                period_s = UNFILTERED_PERIOD_S
-                when = f'the next call is in {UNFILTERED_PERIOD_S:g} s'
-            else:
-                period_s = math.inf
-                when = 'it is not called again until a parameter is set or the file is read again'
+            period_s, when = AFTER_EXCESS[self._has_exceeded] if is_too_much else (
+                self._period_s(names), '')
+            self._has_exceeded |= is_too_much
             self._report(when and (
                 f'it has {names} entities, which are more than were asked for, so that {when}'),
                 when, 'few poses')

@@ -59,10 +59,6 @@ _LONGEST_REFERENCE = 9
 character has as many."""
 
 
-_RANKS = {'sdf': 2, 'robot': 1}
-"""Of several outermost elements, the first one of the highest rank is read."""
-
-
 class _Replacement(NamedTuple):
     """A text that is replaced everywhere."""
 
@@ -171,7 +167,7 @@ class _Repairer:
                 self._note('an end tag without a start tag; the text behind it is not read')
                 break
             else:
-                rank = _RANKS.get(token['tag'], 0)
+                rank = {'sdf': 2, 'robot': 1}.get(token['tag'], 0)
                 if not self._open and rank > highest_rank and not is_mismatched:
                     highest_rank = rank
                     if self._is_after_root:

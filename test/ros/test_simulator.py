@@ -135,7 +135,7 @@ def test_a_wrong_number_is_told(node, simulator, service, names, states, line, c
 
 def test_after_two_answers_with_too_much_it_is_not_asked_until_a_change(
         node, simulator, service, monkeypatch, capfd):
-    monkeypatch.setattr(module, 'UNFILTERED_PERIOD_S', 0.0)
+    monkeypatch.setattr(module, 'AFTER_EXCESS', ((0.0, 'soon'), module.AFTER_EXCESS[1]))
     requests = service(['a', 'b', 'c'], 3)
     spin_until(node.executor, lambda: len(requests) == 2)
     spin_as_long_as_many_calls(node)
