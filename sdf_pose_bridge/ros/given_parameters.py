@@ -358,7 +358,7 @@ def _parameters_from_messages(
     node: Node, messages: Sequence[ParameterMessage],
 ) -> list[Parameter]:
     """
-    Return the parameters of a call.
+    Return the parameters of a call; of several values of one, the last.
 
     :return: the parameters, without read-only ones that keep their values, such as in a dump that
         "ros2 param load" sets.
@@ -369,7 +369,7 @@ def _parameters_from_messages(
         msg = f'a call can set at most {MOST_VALUES} parameters, and this one has {len(messages)}'
         raise ValueError(msg)
     parameters = []
-    for message in messages:
+    for message in {each.name: each for each in messages}.values():
         if not node.has_parameter(message.name):
             msg = (f'there is no parameter "{printable(shortened(message.name))}"'
                    f'{hint_from_names(message.name, DECLARATIONS)}')

@@ -12,6 +12,7 @@ from rcl_interfaces.srv import (
     GetParameters,
     GetParameterTypes,
     SetParameters,
+    SetParametersAtomically,
 )
 from rclpy.parameter import Parameter
 
@@ -271,6 +272,25 @@ def test_a_call_that_sets_parameters_waits_for_the_start(node):
     with pytest.raises(StopIteration) as end:
         call.send(None)
     assert [each.reason for each in end.value.value.results] == ['a is set']
+
+
+def test_of_several_values_of_a_parameter_in_a_call_only_the_last_is_looked_at(node):
+    taken = []
+
+    async def set_parameters(parameters):
+        taken.extend((each.name, each.value) for each in parameters)
+        return SetParametersResult(successful=True)
+
+    services = ParameterServices(node)
+    services.start(set_parameters)
+    call = service_of(node, SetParametersAtomically).callback(
+        SetParametersAtomically.Request(parameters=[
+            Parameter(name, value=value).to_parameter_msg()
+            for name, value in [('a', 1.0), ('b', ['z']), *[('a', 2.0)] * 900, ('a', 4.0)]]),
+        SetParametersAtomically.Response())
+    with pytest.raises(StopIteration):
+        call.send(None)
+    assert taken == [('a', 4.0), ('b', ['z'])]
 
 
 @pytest.mark.parametrize(('service_type', 'field'), [
