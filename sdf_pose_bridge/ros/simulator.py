@@ -142,7 +142,8 @@ class Simulator(StateSource):
             if self._told:
                 self._ask_for_names(self._told)
         now, begins = time.monotonic(), [*self._calls.values()]
-        longest_s = LONGEST_CALL_S if len(begins) > 1 else SECOND_CALL_S
+        is_slow = self._has_exceeded or len(begins) > 1
+        longest_s = LONGEST_CALL_S if is_slow else SECOND_CALL_S
         if now < self._due or (begins and now - begins[0] < longest_s):
             return
         if len(begins) > 1:
