@@ -12,7 +12,7 @@ import needs
 import pytest
 
 from sdf_pose_bridge import load
-from sdf_pose_bridge.geometry.poses import distance_and_angle, pose_inverse, pose_product
+from sdf_pose_bridge.geometry.poses import distance_and_angle, Pose, pose_inverse, pose_product
 from sdf_pose_bridge.sdformat.poses import EULER_RPY, pose_from_text
 
 
