@@ -77,6 +77,11 @@ class _Limits:
             if kind == resource.RLIMIT_AS:
                 self.memory_is_of_the_user = is_of_the_user
 
+    def renew(self) -> None:
+        """Count the processor time from now."""
+        self._used[resource.RLIMIT_CPU] = time.process_time()
+        self.raise_for(0, 0.0, 0.0)
+
     def end(self) -> None:
         """Restore the limits before, also if there is no memory."""
         self._reserve.clear()
@@ -127,6 +132,13 @@ def lift_limits() -> None:
     limits = _LIMITS.get()
     if limits is not None:
         limits.end()
+
+
+def renew_limits() -> None:
+    """Allow the processor time of :func:`limited` again, for the next part of an endless input."""
+    limits = _LIMITS.get()
+    if limits is not None:
+        limits.renew()
 
 
 def raise_limits(byte_count: int, most_s: float, most_bytes: float) -> None:

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import io
 from itertools import groupby, islice
 from operator import itemgetter
+import re
 import shutil
 import sys
 import textwrap
@@ -29,6 +30,7 @@ from sdf_pose_bridge.geometry.formats import (
     converted_poses,
     converted_rotations,
     Format,
+    format_from_name,
     POSE_FORMATS,
     PoseFormatError,
     ROTATION_FORMATS,
@@ -37,14 +39,16 @@ from sdf_pose_bridge.geometry.pose_texts import (
     FORMATS,
     NAMES_OF_ARGUMENTS,
     TEXT_FORMATS,
-    texts_from_lines,
+    TextDivider,
 )
 from sdf_pose_bridge.geometry.poses import Pose, pose_inverse, pose_products, relative_poses
 from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.geometry.sequences import ZYX
+from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.process_limits import renew_limits
 
-TEXTS_AT_A_TIME = 10_000
-"""Number of texts that are converted together, so that memory is bounded for any input."""
+CHARACTERS_AT_A_TIME = 500_000
+"""How much is converted together, so that memory is bounded for any input."""
 
 _DIGITS_ON_TERMINAL = 12
 """Digits behind the decimal point; others are rounding errors, or not read by people."""
@@ -107,7 +111,7 @@ def run(options: argparse.Namespace) -> int:
     """Convert arguments or texts; return 0, or 1 if one was not converted."""
     conversion = _Conversion(options)
     words = [*options.numbers, *(f'{option} {value}' for option, (value,) in options.named)]
-    if words:
+    if words not in ([], ['-']):
         (result,) = conversion.results([' '.join(words)])
         if isinstance(result, PoseFormatError):
             raise result
@@ -116,19 +120,23 @@ def run(options: argparse.Namespace) -> int:
     if isinstance(sys.stdin, io.TextIOWrapper):
         # Invalid bytes are an error in their text only.
         sys.stdin.reconfigure(errors='backslashreplace')
-    exit_code = 0
-    texts = texts_from_lines(sys.stdin, conversion.row_length)
-    at_a_time = 1 if sys.stdin.isatty() else TEXTS_AT_A_TIME
-    while batch := list(islice(texts, at_a_time)):
-        for (number, _), result in zip(
-                batch, conversion.results([text for _, text in batch]), strict=True):
-            line = result
+    exit_code, end = 0, '\n' if options.target else '\n\n'
+    divider, lines, is_terminal = conversion.divider(), [''], sys.stdin.isatty()
+    while lines:
+        lines = [*islice(sys.stdin, 1)] if is_terminal else sys.stdin.readlines(
+            CHARACTERS_AT_A_TIME)
+        # The text has limits, and not how many there are.
+        renew_limits()
+        texts = divider.divided(lines, is_end=not lines)
+        results = conversion.results([text for _, text in texts])
+        for index, ((number, _), result) in enumerate(zip(texts, results, strict=True)):
             if isinstance(result, PoseFormatError):
                 exit_code = 1
                 print_message(options.command, f'line {number}: {result}')
                 # A comment keeps the numbers of lines of output and input equal.
-                line = f'# line {number} is not converted'
-            print(line, end='\n' if options.target else '\n\n')
+                results[index] = f'# line {number} is not converted'
+        if results:
+            print(*results, sep=end, end=end)
     return exit_code
 
 
@@ -142,15 +150,18 @@ class _Conversion:
         self._target = self._form.format if self._form else options.target and (
             format_of_argument(options.target))
         source = self._reader.source
-        self.row_length = source.row_length if source else 0
-        if source is not None:
+        if source is not None and source.name in FORMATS:
             try:
                 self._targets(source)
             except PoseFormatError as error:
                 raise CommandError(str(error), 2) from error
         self._factors = [self._factor(option, words) for option, words in options.factors]
 
-    def results(self, texts: Sequence[str]) -> list[str | PoseFormatError]:
+    def divider(self) -> TextDivider:
+        """Return what divides lines into texts."""
+        return TextDivider(self._reader.source)
+
+    def results(self, texts: Sequence[str | list[float]]) -> list[str | PoseFormatError]:
         """Return, for each text, the lines to print, or the reason why it is not converted."""
         results: list[str | PoseFormatError] = []
         for source, group in groupby(map(self._read, texts), itemgetter(0)):
@@ -158,14 +169,21 @@ class _Conversion:
             results += found if source is None else self._results(source, found)
         return results
 
-    def _read(self, text: str) -> tuple[Format | None, Any]:
-        """Return the format and the numbers of a text, or None and the error."""
+    def _read(self, text: str | list[float]) -> tuple[Format | None, Any]:
+        """Return the format and the numbers of a text; or None and the error, or the result."""
+        if not isinstance(text, str):
+            return self._reader.row_format, text
         try:
-            numbers, source, notes = self._reader.read(text)
+            poses = self._reader.read_all(text)
+            self._tell(*(note for pose in poses for note in pose.notes))
+            if len(poses) == 1:
+                return poses[0].format, poses[0].numbers
+            lines = self._converted(poses[0].format, [pose.numbers for pose in poses])
         except PoseFormatError as error:
             return None, error
-        self._tell(*notes)
-        return source, numbers
+        return None, '\n'.join(
+            f'# {printable(pose.name)}\n{line}' if pose.name else line
+            for pose, line in zip(poses, lines, strict=True))
 
     def _results(
         self, source: Format, rows: Sequence[Sequence[float]],
@@ -204,6 +222,8 @@ class _Conversion:
         formats = POSE_FORMATS if source.position else ROTATION_FORMATS
         if self._target is None:
             return list(formats.values())
+        if self._target.name not in FORMATS:  # a sequence of axes
+            return [format_from_name(self._target.name, formats)]
         if self._target.name not in formats:
             kind, other = ('pose', 'rotation') if source.position else ('rotation', 'pose')
             msg = f'{source.name} is a {kind} and {self._options.target} a {other}'
@@ -213,7 +233,7 @@ class _Conversion:
     def _factor(self, option: str, words: Sequence[str]) -> tuple[Pose, Format]:
         """Read a pose to multiply with, in the format of ``--from`` if it has none of its own."""
         reader = PoseReader(None, self._options, self._reader.source)
-        if words[0] in _NAMES:
+        if words[0] in _NAMES or re.fullmatch('[sr][xyz]{3}', words[0]):
             # The options of units are about the numbers of --from.
             no_units = argparse.Namespace(given_angle=None, given_length=None)
             reader, words = PoseReader(words[0], no_units), words[1:]
@@ -255,8 +275,9 @@ class _Conversion:
 
     def _tell(self, *sentences: str) -> None:
         for sentence in filter(None, sentences):
-            if sentence not in self._told:
-                self._told.add(sentence)
+            # What differs in numbers only is told once.
+            if (kind := re.sub(r'[-+.\d]+', '', sentence)) not in self._told:
+                self._told.add(kind)
                 print_message(self._options.command, sentence)
 
 

@@ -23,8 +23,9 @@ from sdf_pose_bridge.geometry.formats import (
 from sdf_pose_bridge.geometry.pose_texts import (
     FORMATS,
     NoFormatError,
+    only_pose,
     TEXT_FORMATS,
-    typed_pose_from_text,
+    typed_poses_from_text,
     TypedPose,
 )
 from sdf_pose_bridge.geometry.poses import PoseArray
@@ -46,17 +47,21 @@ class PoseReader:
         self._form_name = name if name in TEXT_FORMATS else ''
         self.source = format_of_argument(name) if name and not self._form_name else None
         self._options, self._default = options, default
-        if self.source is not None:
-            self._in_given_units(self.source)
+        self.row_format = None if self.source is None else self._in_given_units(self.source)
+        """The format of rows, in the units of the options."""
 
     def read(self, text: str) -> TypedPose:
         """Read a pose or a rotation; raise a PoseFormatError or a CommandError."""
+        return only_pose(self.read_all(text))
+
+    def read_all(self, text: str) -> Sequence[TypedPose]:
+        """Read a pose or a rotation, or a list of them; raise errors as :meth:`read`."""
         try:
-            typed = typed_pose_from_text(text, self.source, self._default, self._form_name)
+            typed = typed_poses_from_text(text, self.row_format, self._default, self._form_name)
         except NoFormatError as error:
             msg = f'{error}; add --from FORMAT, and see --help'
             raise CommandError(msg, 2) from error
-        return typed._replace(format=self._in_given_units(typed.format))
+        return [each._replace(format=self._in_given_units(each.format)) for each in typed]
 
     def _in_given_units(self, source: Format) -> Format:
         """Return a format in the units of the options."""

@@ -80,7 +80,7 @@ def run(options: argparse.Namespace) -> int:
             msg = f'three numbers are a position, so leave out --{options.given_angle.text}'
             raise CommandError(msg)
         text += ', 0, 0, 0' if ',' in text else ' 0 0 0'
-    numbers, source, notes = reader.read(text)
+    numbers, source, notes, _ = reader.read(text)
     for note in notes:
         print_message(options.command, note)
     given = Pose(*poses_from_rows([numbers], source)[0].tolist())

@@ -31,7 +31,7 @@ from sdf_pose_bridge.geometry.rotations import (
     rotation_vector_from_quaternion,
     RotationError,
 )
-from sdf_pose_bridge.geometry.sequences import AngleSequence, XYZ, ZYX, ZYZ
+from sdf_pose_bridge.geometry.sequences import angle_sequence, AngleSequence, ZYX
 from sdf_pose_bridge.geometry.units import (
     are_unlikely,
     DEGREES,
@@ -47,6 +47,7 @@ LAST_ROW = (0.0, 0.0, 0.0, 1.0)
 """Last row of the 4 x 4 matrix of a pose, exactly; libfranka compares without a tolerance."""
 
 _LONGEST_NAME, _MOST_NAMES = 40, 3
+_SEQUENCE = re.compile('[sr]?(?!.?xx|.?yy|.?zz)[xyz]{3}')
 _ORDER_OR_UNIT = re.compile('[wxyz]{3,4}|rpy|ypr|row|col|deg|rad|mm')
 
 NORM_TOLERANCE = 0.01
@@ -182,7 +183,7 @@ def converted_poses(
 
     :param values: any number of poses one after another, shape (n * row_length,), or one in each
         row, shape (n, row_length).
-    :param from_format: format of the values, a name in :data:`POSE_FORMATS` or a synonym.
+    :param from_format: format of the values, a name as for :func:`format_from_name`.
     :param to_format: format of the result; if it is the same, the poses become canonical.
     :return: the poses, shape (n * row_length,) or (n, row_length) like the values; new memory.
         The first and the last angle are within a half turn, the middle one (pitch) within a right
@@ -213,7 +214,7 @@ def format_from_name(
     all_names: str = 'docs/pose_formats.md',
 ) -> Format:
     """
-    Return the format with a name or synonym.
+    Return the format with a name, a synonym, or the axes of Euler angles as in transforms3d.
 
     :param what: ``pose format`` or ``rotation format``, for the message.
     :param all_names: the place of the list of formats, for the message.
@@ -223,6 +224,12 @@ def format_from_name(
         synonym: each for each in formats.values() for synonym in (each.name, *each.synonyms)}
     if str(name) in names:
         return names[str(name)]
+    if _SEQUENCE.fullmatch(axes := str(name).lower()):
+        if len(axes) == 3:
+            msg = f'no {what} "{name}"; with fixed axes it is s{axes}, with turning ones r{axes}'
+            raise PoseFormatError(msg)
+        turned = _turned('angles', axes, RADIANS)._replace(name=axes)
+        return _pose(axes, METRES, turned) if [*formats.values()][-1].position else turned
     msg = f'no {what} {shortened(repr(name))}; {_nearest(str(name), names)}all: {all_names}'
     raise PoseFormatError(msg)
 
@@ -321,15 +328,14 @@ _MATRIX = Numbers(
     lambda quats: matrix_from_quaternion(quats).reshape(-1, 9))
 
 
-def _fixed_xyz(numbers: str) -> Format:
-    """Return angles in degrees about the fixed axes x, y and z, in the order of the numbers."""
-    text = f'{numbers} in {{angle}} about the fixed axes x, y, z'
-    return Format('', text, ZYX, (2, 1, 0), DEGREES)
-
-
-def _turned(numbers: str, sequence: AngleSequence) -> Format:
-    """Return angles in degrees of a sequence, in the order of the numbers."""
-    return Format('', f'{numbers} in {{angle}} ({sequence.name})', sequence, (0, 1, 2), DEGREES)
+def _turned(numbers: str, sequence: str, angle: Unit = DEGREES) -> Format:
+    """Return angles in the order of the numbers; the sequence is named as by transforms3d."""
+    letters = sequence[1:]
+    if sequence[0] == 's':  # the same as about rotating axes in reverse
+        text = f'{numbers} in {{angle}} about the fixed axes {", ".join(letters)}'
+        return Format('', text, angle_sequence(letters[::-1]), (2, 1, 0), angle)
+    turns = angle_sequence(letters)
+    return Format('', f'{numbers} in {{angle}} ({turns.name})', turns, (0, 1, 2), angle)
 
 
 def _pose(name: str, length: Unit, rotation: Format, *synonyms: str) -> Format:
@@ -373,22 +379,22 @@ POSE_FORMATS: Mapping[str, Format] = {each.name: each for each in (
         'franka_matrix', '4 x 4 matrix column after column, in {length}', _MATRIX,
         (0, 4, 8, 1, 5, 9, 2, 6, 10), position=(12, 13, 14), last_row=(3, 7, 11, 15),
         synonyms=('matrix_column_major', 'matrix_col_major')),
-    _pose('franka_measured', MILLIMETRES, _fixed_xyz('rotations x y z')),
+    _pose('franka_measured', MILLIMETRES, _turned('rotations x y z', 'sxyz')),
     _pose('ur_pose', METRES, _VECTOR),
     _pose('ur_pendant', MILLIMETRES, _VECTOR),
-    _pose('kuka_abc', MILLIMETRES, _turned('A B C', ZYX), 'kuka'),
+    _pose('kuka_abc', MILLIMETRES, _turned('A B C', 'rzyx'), 'kuka'),
     _pose('abb', MILLIMETRES, _WXYZ, 'abb_quaternion'),
-    _pose('fanuc_wpr', MILLIMETRES, _fixed_xyz('W P R'), 'fanuc'),
-    _pose('yaskawa', MILLIMETRES, _fixed_xyz('Rx Ry Rz'), 'motoman'),
-    _pose('staubli', MILLIMETRES, _turned('Rx Ry Rz', XYZ)),
-    _pose('kawasaki_oat', MILLIMETRES, _turned('O A T', ZYZ), 'kawasaki'),
-    _pose('doosan', MILLIMETRES, _turned('A B C', ZYZ)),
-    _pose('kinova_gen3', METRES, _fixed_xyz('theta_x theta_y theta_z'), 'kinova'),
-    _pose('kinova_jaco', METRES, _turned('ThetaX ThetaY ThetaZ', XYZ), 'kinova_mico'),
+    _pose('fanuc_wpr', MILLIMETRES, _turned('W P R', 'sxyz'), 'fanuc'),
+    _pose('yaskawa', MILLIMETRES, _turned('Rx Ry Rz', 'sxyz'), 'motoman'),
+    _pose('staubli', MILLIMETRES, _turned('Rx Ry Rz', 'rxyz')),
+    _pose('kawasaki_oat', MILLIMETRES, _turned('O A T', 'rzyz'), 'kawasaki'),
+    _pose('doosan', MILLIMETRES, _turned('A B C', 'rzyz')),
+    _pose('kinova_gen3', METRES, _turned('theta_x theta_y theta_z', 'sxyz'), 'kinova'),
+    _pose('kinova_jaco', METRES, _turned('ThetaX ThetaY ThetaZ', 'rxyz'), 'kinova_mico'),
     _pose('mujoco', METRES, _WXYZ, 'sdf_quat_wxyz'),
-    _pose('mitsubishi', MILLIMETRES, _fixed_xyz('A B C'), 'melfa'),
-    _pose('denso', MILLIMETRES, _fixed_xyz('RX RY RZ')),
-    _pose('epson_uvw', MILLIMETRES, _turned('U V W', ZYX), 'epson'),
-    _pose('ufactory', MILLIMETRES, _fixed_xyz('roll pitch yaw'), 'xarm'),
+    _pose('mitsubishi', MILLIMETRES, _turned('A B C', 'sxyz'), 'melfa'),
+    _pose('denso', MILLIMETRES, _turned('RX RY RZ', 'sxyz')),
+    _pose('epson_uvw', MILLIMETRES, _turned('U V W', 'rzyx'), 'epson'),
+    _pose('ufactory', MILLIMETRES, _turned('roll pitch yaw', 'sxyz'), 'xarm'),
 )}
 """All formats of poses by name; their common representation has shape (n, 7)."""

@@ -3,13 +3,13 @@
 """
 Read poses and rotations as people type them, or paste what a program has printed.
 
-Numbers may be in lists and in several lines. A form is a text that names the order or the units of
-its numbers, by keys, by an element or by its structure, so that it has one format only.
+Numbers alone may be in lists and in several lines. In other texts, names say what the numbers are:
+tables have the names of each format.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from decimal import Decimal
 import re
 from typing import NamedTuple
@@ -18,23 +18,29 @@ import numpy as np
 
 from sdf_pose_bridge.geometry.formats import (
     Format,
+    format_from_name,
     POSE_FORMATS,
     PoseFormatError,
     ROTATION_FORMATS,
 )
+from sdf_pose_bridge.geometry.named_numbers import LONGEST_TEXT
+from sdf_pose_bridge.geometry.pose_search import FoundPose, poses_from_text
 from sdf_pose_bridge.names import shortened
 
 FORMATS: Mapping[str, Format] = {**ROTATION_FORMATS, **POSE_FORMATS}
 """All formats of numbers."""
 
 _SEPARATOR = re.compile(r'[\s,;()\[\]{}]+')
-_SEPARATOR_OF_NAMES = re.compile(r"""(?:[\s,;:=()\[\]{}<>/"']|-(?=\s))+""")
 _ARRAY = re.compile(r'\b(?:\w+\.)?(?:array|matrix|tensor)\(|,\s*dtype=[\w.]+')
 _DECIMAL_COMMA = re.compile(r'(?<![\w.,+-])[-+]?\d+,\d+(?![\w.]|,\S)')
 _COMMA, _BLANK = re.compile(r'\d,\s*[-+.\d]'), re.compile(r'[\d.][ \t]+[-+.\d]')
+_FIRST_NUMBER = re.compile(r'[\s\[({]*[-+.]?\d|\s*\Z')
+
 _NUMBERS = re.compile(r'[\s\d.,;eE+\[\]-]+')
-_NAME = re.compile(r'\s*(?:- |At time\b|\w+:(?:\s|$))')
-_NUMBER_OR_LIST = re.compile(r'[-+.]?\d|[\[({<]|--\w')
+_NAME = re.compile(
+    r'\s*(?:- |At time\b|["\']?\w+["\']?:(?:\s|$)|[\w.]+\s*=\s*[-+.\d]|\w+\s*\{\s*$|<[?!])')
+_FIRST_OF_TEXT = re.compile(r'[-+.]?\d|[\[({<]|--\w')
+_BEGIN, _END = re.compile('<[A-Za-z]|<!--'), re.compile('</|/>|-->')
 
 _MINUS = '\u2212'
 _FEWEST_DIGITS, _EXACT = 2, 1e-6
@@ -53,76 +59,86 @@ class TypedPose(NamedTuple):
     format: Format
     notes: tuple[str, ...] = ()
     """Clauses for people: how the text was read."""
-
-
-class Form(NamedTuple):
-    """A text that names the format of its numbers."""
-
-    text: str
-    """The text, for people."""
-    format: Format
-    pattern: str
-    """A regular expression, whose group is the part with the numbers."""
-    parts: tuple[tuple[str, str], ...]
-    """
-    Names and numbers (#) in the order of the format, and numbers instead if they are missing.
-
-    Words are separated by blanks, whatever separates them in the text.
-    """
     name: str = ''
-    """Name for users of a form that is also printed."""
-    template: str = ''
-    """The printed text, with places for the numbers."""
+    """The name of the pose in a list of poses, if it has one."""
 
 
-def typed_pose_from_text(
+class TextFormat(NamedTuple):
+    """A text that is printed as a format."""
+
+    format: Format
+    template: str
+    """The text, with places for the numbers."""
+
+
+def only_pose(poses: Sequence[TypedPose]) -> TypedPose:
+    """Return the pose of a text; raise a PoseFormatError if it has several."""
+    if len(poses) > 1:
+        msg = f'the text has several poses ({len(poses)}); give one at a time'
+        raise PoseFormatError(msg)
+    return poses[0]
+
+
+def typed_poses_from_text(
     text: str, source: Format | None = None, default: Format | None = None, form_name: str = '',
-) -> TypedPose:
+) -> Sequence[TypedPose]:
     """
-    Read the numbers of one pose or rotation.
+    Read a pose or rotation, or a list of poses with names.
 
-    :param text: numbers, with commas, semicolons and brackets if there are any, or a form.
+    :param text: numbers, with commas, semicolons and brackets if there are any, or with names.
     :param source: the requested format; a text that names another one is refused.
     :param default: the format of numbers if neither the text nor ``source`` says it.
-    :param form_name: the name of the only forms that are read; empty for all, and for numbers.
+    :param form_name: the name in :data:`TEXT_FORMATS` of the only text that is read; or empty.
     :raises NoFormatError: if nothing says the format.
     :raises PoseFormatError: if the text is no pose in the format, or has decimal commas.
     """
-    text, begun = text.replace(_MINUS, '-'), None
+    text = text.replace(_MINUS, '-')
+    if len(text) > LONGEST_TEXT:
+        msg = f'the text has more than {LONGEST_TEXT} characters'
+        raise PoseFormatError(msg)
+    without_names = _ARRAY.sub(' ', text)
+    is_numbers = _FIRST_NUMBER.match(without_names) is not None
+    found: Sequence[FoundPose] = ()
+    if form_name or not is_numbers or '[[' in text:
+        found = poses_from_text(text, source)
+        if found and '\n' not in text.strip() and (comment := re.search(r'\s#.*\d', text)):
+            msg = f'"{shortened(comment[0])}" may hide numbers; give the lines as they are'
+            raise PoseFormatError(msg)
+    if form_name and {form_name} != {each.text_format for each in found}:
+        msg = f'the text is no {form_name}'
+        raise PoseFormatError(msg)
+    if found and source is not None and found[0].format.name != source.name:
+        msg = f'the text is {found[0].format.name} ({found[0].text}), not {source.name}'
+        raise PoseFormatError(msg)
+    if found:
+        return [_typed_pose(words, read, *(what and (f'read as {read.name}: {what}',)), *notes)
+                ._replace(name=name) for words, read, what, _, notes, name in found]
     if _DECIMAL_COMMA.search(text):
         raise _decimal_commas(text)
-    for form in () if _NUMBERS.fullmatch(text) and '[[' not in text else FORMS:
-        found = re.search(form.pattern, text, re.DOTALL)
-        if found is None or form_name not in ('', form.name):
-            continue
-        begun = form
-        if words := _words_of_form(form, found[1]):
-            if source is not None and source.name != form.format.name:
-                msg = f'the text is {form.format.name} ({form.text}), not {source.name}'
-                raise PoseFormatError(msg)
-            return _typed_pose(
-                words, [*map(number_from_text, words)], form.format,
-                f'read as {form.format.name}: {form.text}')
-    if begun is not None or form_name:
-        msg = f'the text has not the numbers of {begun.text if begun else form_name}'
+    if not is_numbers and re.search('[:=<{]', text):
+        msg = (f'"{shortened(" ".join(text[:200].split()), 40)}" has no names of a pose, such as'
+               ' x y z roll pitch yaw; docs/pose_formats.md lists them')
         raise PoseFormatError(msg)
-    text, source = _ARRAY.sub(' ', text), source or default
-    words = [*filter(None, _SEPARATOR.split(text))]
+    words, source = [*filter(None, _SEPARATOR.split(without_names))], source or default
     numbers = [*map(number_from_text, words)]
     if _COMMA.search(text) and _BLANK.search(text):
         raise _decimal_commas(text)
     if source is None:
         msg = f'nothing says the format of these {len(numbers)} numbers'
         raise NoFormatError(msg)
-    if len(words) == 12 and source.last_row == (12, 13, 14, 15):
-        return _typed_pose(
-            words, [*numbers, 0.0, 0.0, 0.0, 1.0], source, 'the last row 0 0 0 1 is added')
+    notes: tuple[str, ...] = ()
+    if source.name not in FORMATS:  # a sequence of axes
+        if len(words) == 3:
+            source = format_from_name(source.name, ROTATION_FORMATS)._replace(angle=source.angle)
+        notes = (f'read as {source.name}: {source.meaning}',)
+    elif len(words) == 12 and source.last_row[:1] == (12,):
+        words, notes = [*words, *'0001'], ('the last row 0 0 0 1 is added',)
     if len(words) != source.row_length:
         hint = '; decimals need points' if ',' in text and '.' not in text else ''
         msg = (f'{source.name} has {source.row_length} numbers ({source.meaning}), but'
                f' {len(words)} {"is" if len(words) == 1 else "are"} given{hint}')
         raise PoseFormatError(msg)
-    return _typed_pose(words, numbers, source)
+    return [_typed_pose(words, source, *notes)]
 
 
 def number_from_text(text: str) -> float:
@@ -138,48 +154,136 @@ def number_from_text(text: str) -> float:
         raise PoseFormatError(msg) from None
 
 
-def texts_from_lines(lines: Iterable[str], row_length: int) -> Iterator[tuple[int, str]]:
+class TextDivider:
     """
-    Divide lines into texts, each of one pose or rotation.
+    Divides lines into rows of numbers and texts, each of a pose or rotation, or of a list.
 
-    Most texts are one line. A list, an element, the rows of a matrix, and names with numbers take
-    several. Blank lines, and lines that begin with #, are between texts.
+    A line with as many numbers as the format has is a row. Brackets, elements, the rows of a
+    matrix, and names with numbers take several lines. Lines that begin with # belong to no text.
 
-    :param row_length: how many numbers a line with a whole pose has.
-    :return: the number of the first line, and the text.
+    :param source: the format; None if the texts name theirs.
     """
-    first, text = 0, ''
-    for number, line in enumerate(lines, start=1):
-        is_blank = line.strip() in ('', '---')
-        if text and (is_blank or (_NAME.match(text) and (
-                _NUMBER_OR_LIST.match(line) or line.split()[0] == text.split()[0] != '-'))
-                or _row_count(text) not in (0, _row_count(line))):
-            yield first, text
-            text = ''
-        if not text and (is_blank or line.lstrip().startswith('#')):
-            continue
-        first, text = (first, text + line) if text else (number, line)
-        count, rows = _row_count(text), text.count('\n')
-        is_open = sum(map(text.count, '[({')) > sum(map(text.count, '])}'))
-        is_row = count not in (0, row_length) and rows < count and rows * count != row_length
-        if not (is_open or is_row or _NAME.match(text) or ('<' in text and '/' not in text)):
-            yield first, text
-            text = ''
-    if text:
-        yield first, text
+
+    def __init__(self, source: Format | None) -> None:
+        self._source = source
+        # A line of a sequence of axes has a pose or a rotation.
+        self._is_sequence = source is not None and source.name not in FORMATS
+        self._length = 0 if source is None or self._is_sequence else source.row_length
+        self._number, self._depth, self._size = 0, 0, 0
+        self._lines: list[str] = []
+        """Those of a text that is not complete."""
+        self._parts: list[tuple[int, int]] = []
+        """The numbers, and places among these, of lines before which there are blank ones."""
+        self._row_count, self._is_named, self._takes_rows, self._is_after_blank = (
+            0, False, False, False)
+        self._texts: list[tuple[int, str | list[float]]] = []
+
+    def divided(
+        self, lines: Iterable[str], *, is_end: bool = False,
+    ) -> Sequence[tuple[int, str | list[float]]]:
+        """
+        Return what is complete after some more lines.
+
+        :param is_end: whether there are no more, so that all is complete.
+        :return: with the number of its first line, each text, or the numbers of a row.
+        """
+        self._texts = []
+        for line in lines:
+            self._number += 1
+            words = line.split()
+            if words and len(words) == self._length and not (
+                    self._lines and self._is_in_text(line)) and (row := self._row(words, line)):
+                self._end()
+                self._texts.append((self._number, row))
+            elif not words or words[0] in ('---', '...'):
+                self._is_after_blank = True
+                if words or not (self._is_named or self._depth):
+                    self._end()
+            elif words[0][0] not in '#%':
+                self._add(line, words)
+        if is_end:
+            self._end()
+        return self._texts
+
+    def _row(self, words: Sequence[str], line: str) -> list[float] | None:
+        """Return the numbers of a line; None if they are none, or those of a rounded matrix."""
+        try:
+            row = [*map(float, words)]
+        except ValueError:
+            return None
+        columns = self._source.columns if self._source else ()
+        is_plain = line.isascii() and '_' not in line and (
+            len(columns) != 9 or _is_exact([row[column] for column in columns]))
+        return row if is_plain else None
+
+    def _is_pose(self, text: tuple[int, str]) -> bool:
+        try:
+            return bool(typed_poses_from_text(text[1], self._source))
+        except PoseFormatError:
+            return False
+
+    def _is_in_text(self, line: str) -> bool:
+        """Whether a line is in the brackets, or the rows, of the text before."""
+        return line[0].isspace() or self._lines[-1].rstrip()[-1:] == '\\' or (
+            not self._is_after_blank and (self._depth > 0 or (
+                self._takes_rows and _FIRST_OF_TEXT.match(line) is not None)))
+
+    def _add(self, line: str, words: Sequence[str]) -> None:
+        is_row = _NUMBERS.fullmatch(line) is not None
+        if self._lines and self._depth == 0 and (
+                not is_row or len(words) != self._row_count if self._row_count else
+                not self._is_in_text(line) and (
+                    (words[0] == self._lines[0].split()[0] != '-' and (
+                        words[1:] != ['{'] or self._is_after_blank)) or (
+                        _FIRST_OF_TEXT.match(line) and self._lines[0][:2] not in ('<?', '<!')))):
+            self._end()
+        if not self._lines:
+            self._parts, self._is_named = [(self._number, 0)], _NAME.match(line) is not None
+            self._row_count = len(words) if is_row and len(words) in (3, 4) and (
+                not self._is_sequence) else 0
+        if self._is_after_blank and self._lines and not line[0].isspace():
+            self._parts.append((self._number, len(self._lines)))
+        self._lines.append(line)
+        self._size += len(line)
+        text = line.partition(' #')[0]
+        self._depth = max(0, self._depth + sum(map(text.count, '[({')) - sum(
+            map(text.count, '])}')))
+        if self._lines[0].lstrip()[0] == '<':
+            self._depth = max(0, self._depth + len(_BEGIN.findall(text)) - len(_END.findall(text)))
+        self._is_after_blank = False
+        self._takes_rows = text.rstrip()[-1:] == ':' or (
+            self._takes_rows and is_row and not line[0].isspace())
+        is_partial = len(self._lines) < self._row_count and (
+            len(self._lines) * self._row_count != self._length)
+        if self._size > LONGEST_TEXT or not (
+                self._depth or self._is_named or is_partial or text.rstrip()[-1:] == '\\'):
+            self._end()
+
+    def _end(self) -> None:
+        if self._lines:
+            ends = [*(begin for _, begin in self._parts[1:]), len(self._lines)]
+            parts = [(number, ''.join(self._lines[begin:end]))
+                     for (number, begin), end in zip(self._parts, ends, strict=True)]
+            whole = self._parts[0][0], ''.join(self._lines)
+            # A file with blank lines, unless these are between poses.
+            are_texts = parts[1:] and not self._is_pose(whole) and any(map(self._is_pose, parts))
+            self._texts += parts if are_texts else [whole]
+        self._lines, self._depth, self._size = [], 0, 0
+        self._row_count, self._is_named, self._takes_rows = 0, False, False
 
 
-def _row_count(text: str) -> int:
-    """Return how many numbers the first line of a text has if it may be one of a matrix; or 0."""
-    count = len(_SEPARATOR.sub(' ', text.partition('\n')[0]).split())
-    return count if count in (3, 4) and _NUMBERS.fullmatch(text) else 0
+def _is_exact(matrix: Sequence[float]) -> bool:
+    """Whether the rows of a 3 x 3 matrix are orthonormal, so that it is not rounded."""
+    a, b, c, d, e, f, g, h, i = matrix
+    return max(
+        abs(a * a + b * b + c * c - 1.0), abs(d * d + e * e + f * f - 1.0),
+        abs(g * g + h * h + i * i - 1.0), abs(a * d + b * e + c * f),
+        abs(a * g + b * h + c * i), abs(d * g + e * h + f * i)) < 1e-7
 
 
-def _typed_pose(
-    words: list[str], numbers: list[float], source: Format, *notes: str,
-) -> TypedPose:
+def _typed_pose(words: Sequence[str], source: Format, *notes: str) -> TypedPose:
     """Return a pose; of a matrix whose digits are few, with the nearest rotation."""
-    places = list(source.columns)
+    numbers, places = [*map(number_from_text, words)], list(source.columns)
     if len(places) == 9 and np.abs(matrix := np.array(numbers)[places]).max() < 2.0:
         # Small numbers have more digits behind the point in some programs.
         digits = max((-int(Decimal(words[place]).as_tuple().exponent) for place in places
@@ -195,81 +299,20 @@ def _typed_pose(
     return TypedPose(numbers, source, notes)
 
 
-def _words_of_form(form: Form, body: str) -> list[str]:
-    """Return the numbers of a text in the order of the format; none if they are others."""
-    rest = ' '.join(filter(None, _SEPARATOR_OF_NAMES.split(body)))
-    words: list[str] = []
-    for part, missing in form.parts:
-        pattern = rf'(?<!\S){part.replace("#", "([-+.0-9][^ ]*)")}(?! [-+.]?\d|\S)'
-        found = [match.groups() for match in re.finditer(pattern, rest)]
-        if len(found) > 1:
-            msg = f'the text has several poses ({form.text}); give one at a time'
-            raise PoseFormatError(msg)
-        if not found and not missing:
-            return []
-        words += found[0] if found else missing.split()
-        rest = re.sub(pattern, '', rest) if missing else rest
-    # A misspelt name must not become a missing one.
-    is_complete = not form.parts[0][1] or not re.search(r'(?<!\S)[-+.]?\d', rest)
-    return words if is_complete else []
-
-
 def _decimal_commas(text: str) -> PoseFormatError:
     return PoseFormatError(
         f'"{shortened(" ".join(text.split()), 40)}" has decimal commas, or commas between some'
         ' numbers only; decimals need points')
 
 
-# The table
+TEXT_FORMATS = {
+    'sdf_pose': TextFormat(POSE_FORMATS['sdf_rpy'], '<pose>{} {} {} {} {} {}</pose>'),
+    'urdf_origin': TextFormat(
+        POSE_FORMATS['sdf_rpy'], '<origin xyz="{} {} {}" rpy="{} {} {}"/>'),
+    'static_transform_publisher': TextFormat(
+        POSE_FORMATS['sdf_quat_xyzw'], '--x {} --y {} --z {} --qx {} --qy {} --qz {} --qw {}')}
+"""The texts that are printed."""
 
-def _list(count: int) -> str:
-    return r'\[' + ','.join(count * [r'[^][,]+']) + r'\]\s*'
-
-
-def _options(names: str, missing: str) -> tuple[tuple[str, str], ...]:
-    return tuple((f'--{name} #', default) for name, default in zip(
-        names.split(), missing.split(), strict=True))
-
-
-_RPY, _RPY_DEGREES, _QUAT = (
-    POSE_FORMATS[name] for name in ('sdf_rpy', 'sdf_rpy_degrees', 'sdf_quat_xyzw'))
-_SIX, _SEVEN = (((f'^{" ".join(count * "#")}$', ''),) for count in (6, 7))
-
-FORMS = (
-    Form('<pose>', _QUAT, r"""<pose\b[^<>]*rotation_format=["']quat_xyzw[^<>]*>([^<]*)""",
-         _SEVEN, 'sdf_pose'),
-    Form('<pose degrees="true">', _RPY_DEGREES,
-         r"""<pose\b[^<>]*degrees=["'](?:true|1)\b[^<>]*>([^<]*)""", _SIX, 'sdf_pose'),
-    Form('<pose>', _RPY, r'<pose\b[^<>]*>([^<]*)', _SIX, 'sdf_pose',
-         '<pose>{} {} {} {} {} {}</pose>'),
-    Form('<origin>', _RPY, r'<origin\b([^<>]*)', (('xyz # # #', '0 0 0'), ('rpy # # #', '0 0 0')),
-         'urdf_origin', '<origin xyz="{} {} {}" rpy="{} {} {}"/>'),
-    Form('static_transform_publisher', _QUAT, r'\A(?=.*--q[xyzw]\b)(.*)',
-         _options('x y z qx qy qz qw', '0 0 0 0 0 0 1'), 'static_transform_publisher',
-         '--x {} --y {} --z {} --qx {} --qy {} --qz {} --qw {}'),
-    Form('static_transform_publisher', _RPY, r'\A(?=.*--(?:[xyz]|roll|pitch|yaw)\b)(.*)',
-         _options('x y z roll pitch yaw', '0 0 0 0 0 0'), 'static_transform_publisher'),
-    Form('p[...] of Universal Robots', POSE_FORMATS['ur_pose'], r'\bp\[([^][]*)\]', _SIX),
-    Form('{X ...} of KUKA', POSE_FORMATS['kuka_abc'], r'\{(?:\s*\w+\s*:)?(\s*X\b[^{}]*)',
-         (('X # Y # Z # A # B # C #', ''),)),
-    Form('robtarget of ABB', POSE_FORMATS['abb'],
-         rf'\[\s*({_list(3)},\s*{_list(4)}),\s*{_list(4)},\s*{_list(6)}\]', _SEVEN),
-    Form('a message of ROS', _QUAT, r'((?:position|translation|Point|Vector3)\b.*)', (
-        (r'(?:position|translation|\S*Point|\S*Vector3) x # y # z #', ''),
-        (r'(?:orientation|rotation|\S*Quaternion) x # y # z # w #', ''))),
-    Form('tf2_echo', _QUAT, r'(Translation\b.*)', (
-        ('Translation # # #', ''), (r'in Quaternion(?: \D\S*)? # # # #', ''))),
-    Form('easy_handeye', _QUAT._replace(position=(4, 5, 6), columns=(1, 2, 3, 0)),
-         r'transformation:(.*)', (('qw # qx # qy # qz # x # y # z #', ''),)),
-    Form('a quaternion of ROS', ROTATION_FORMATS['quaternion'], r'\A(\s*\{?\s*x:.*\bw:.*)',
-         (('x # y # z # w #', ''),)),
-)
-"""The forms; the first one that has the numbers of a text counts."""
-
-TEXT_FORMATS = {form.name: form for form in FORMS if form.template}
-"""The forms that are printed."""
-
-NAMES_OF_ARGUMENTS = (
-    *dict.fromkeys(part.split()[0] for form in FORMS for part, _ in form.parts if part[0] == '-'),
-    '--frame-id', '--child-frame-id')
+NAMES_OF_ARGUMENTS = tuple(f'--{name}' for name in (
+    *'x y z qx qy qz qw roll pitch yaw frame-id child-frame-id'.split(),))
 """The arguments of static_transform_publisher."""

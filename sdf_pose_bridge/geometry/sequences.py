@@ -10,6 +10,7 @@ axes x, y, z with the angles in reverse order, so it is the sequence of roll, pi
 
 from __future__ import annotations
 
+from functools import cache
 import math
 from typing import Any, NamedTuple
 
@@ -94,13 +95,25 @@ class AngleSequence(NamedTuple):
         return self.sign * (middle - self.offset * half_turn)
 
 
-ZYX = AngleSequence("z-y'-x''", np.eye(4))
+_AFTER_QUARTER_TURN = math.sqrt(0.5) * np.array([
+    [1.0, 0.0, -1.0, 0.0], [0.0, 1.0, 0.0, 1.0], [1.0, 0.0, 1.0, 0.0], [0.0, -1.0, 0.0, 1.0]])
+"""Takes from quaternions a first turn about y by a right angle, after which x is where z was."""
+
+
+@cache
+def angle_sequence(letters: str) -> AngleSequence:
+    """Return the sequence about the axes with these letters, such as ``zyx``; always the same."""
+    first, middle, last = np.eye(3)[['xyz'.index(letter) for letter in letters]]
+    is_same = letters[0] == letters[2]
+    # In these axes the rotations are about z, y or -y, and x; or about z, y and z.
+    x = np.cross(middle, first) if is_same else last
+    y = np.cross(first, x)
+    matrix = np.eye(4)
+    matrix[:3, :3] = np.column_stack((x, y, first))
+    return AngleSequence(
+        "{}-{}'-{}''".format(*letters), matrix @ _AFTER_QUARTER_TURN if is_same else matrix,
+        float(y @ middle), 0.5 if is_same else 0.0)
+
+
+ZYX = angle_sequence('zyx')
 """Yaw, pitch and roll."""
-
-XYZ = AngleSequence("x-y'-z''", np.eye(4)[[2, 1, 0, 3]] * [1.0, -1.0, 1.0, 1.0], sign=-1.0)
-"""In axes that are turned half about (1, 0, 1), so that x is z, and y points backwards."""
-
-ZYZ = AngleSequence("z-y'-z''", math.sqrt(0.5) * np.array([
-    [1.0, 0.0, -1.0, 0.0], [0.0, 1.0, 0.0, 1.0], [1.0, 0.0, 1.0, 0.0], [0.0, -1.0, 0.0, 1.0],
-]), offset=0.5)
-"""The body first turns about y by a right angle, so that its x axis is z."""

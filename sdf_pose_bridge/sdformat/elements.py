@@ -15,6 +15,7 @@ import numpy as np
 
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.geometry.chains import Indices
+from sdf_pose_bridge.geometry.pose_attributes import PoseFormat
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.units import FAR_M
 from sdf_pose_bridge.problems import Problems
@@ -24,7 +25,6 @@ from sdf_pose_bridge.sdformat.joints import JointDetails
 from sdf_pose_bridge.sdformat.plugins import Plugin, SensorDetails
 from sdf_pose_bridge.sdformat.poses import (
     pose_doubts,
-    PoseFormat,
     poses_from_numbers,
 )
 from sdf_pose_bridge.sdformat.shapes import Shape

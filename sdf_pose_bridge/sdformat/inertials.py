@@ -18,11 +18,12 @@ from typing import NamedTuple
 import numpy as np
 
 from sdf_pose_bridge.errors import ElementMissingError, LinkInertiaError
+from sdf_pose_bridge.geometry.pose_attributes import boolean_from_text
 from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.sdformat.shape_types import SHAPE_TYPES, Solid
 from sdf_pose_bridge.sdformat.shapes import shape_of
 from sdf_pose_bridge.sdformat.sources import Sources
-from sdf_pose_bridge.sdformat.values import boolean_from_text, number_of_child
+from sdf_pose_bridge.sdformat.values import number_of_child
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of, child_elements, first_child, XmlElement
 
 DEFAULT_DENSITY_KG_M3 = 1000.0

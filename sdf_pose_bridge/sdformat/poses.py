@@ -11,17 +11,21 @@ ignored. Quaternions are normalised, unlike by libsdformat.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 import math
 import re
-from typing import NamedTuple
 
 import numpy as np
 
+from sdf_pose_bridge.geometry.pose_attributes import (
+    pose_format_from_attributes,
+    PoseFormat,
+    PoseTextError,
+)
 from sdf_pose_bridge.geometry.poses import Pose, PoseArray
 from sdf_pose_bridge.geometry.rotations import Floats, quaternion_from_rpy, rpy_from_quaternion
 from sdf_pose_bridge.geometry.units import LARGEST_ANGLE_RAD
 from sdf_pose_bridge.sdformat.values import (
-    boolean_from_text,
     doubt_about_numbers,
     is_representable,
     number_from_word,
@@ -44,21 +48,8 @@ _IDENTITY = '0 0 0 0 0 0', '0 0 0 0 0 0 1'
 _BEGINNING_OF_NUMBER = re.compile(r'[+-]?\.?[0-9]')
 
 
-class PoseFormat(NamedTuple):
-    """The format of the numbers of a pose."""
-
-    is_quaternion: bool = False
-    """True for ``rotation_format="quat_xyzw"``, False for ``euler_rpy``."""
-    is_degrees: bool = False
-    """Whether roll, pitch and yaw are in degrees."""
-
-
 EULER_RPY = PoseFormat()
 """The default."""
-
-
-class PoseTextError(ValueError):
-    """The text is not a pose; the message has the value and the rule."""
 
 
 def pose_format_of(xml: XmlElement) -> PoseFormat:
@@ -67,16 +58,7 @@ def pose_format_of(xml: XmlElement) -> PoseFormat:
 
     :raises PoseTextError: if ``rotation_format`` or ``degrees`` is not valid.
     """
-    rotation_format = attribute_of(xml, 'rotation_format')
-    pose_format = PoseFormat(
-        rotation_format == 'quat_xyzw', boolean_from_text(attribute_of(xml, 'degrees')) is True)
-    if rotation_format not in ('', 'euler_rpy', 'quat_xyzw'):
-        msg = f'rotation_format="{rotation_format}" must be euler_rpy or quat_xyzw'
-        raise PoseTextError(msg)
-    if pose_format.is_quaternion and pose_format.is_degrees:
-        msg = 'degrees="true" cannot be combined with rotation_format="quat_xyzw"'
-        raise PoseTextError(msg)
-    return pose_format
+    return pose_format_from_attributes(partial(attribute_of, xml))
 
 
 def pose_from_text(text: str, pose_format: PoseFormat) -> tuple[Pose, list[str]]:

@@ -23,6 +23,7 @@ from sdf_pose_bridge.errors import (
     ElementInvalidError,
     SdfError,
 )
+from sdf_pose_bridge.geometry.pose_attributes import boolean_from_text, PoseTextError
 from sdf_pose_bridge.names import hint_from_names, ROOT_FRAME, shortened
 from sdf_pose_bridge.sdformat.elements import (
     Elements,
@@ -39,7 +40,6 @@ from sdf_pose_bridge.sdformat.poses import (
     EULER_RPY,
     pose_format_of,
     pose_numbers_from_text,
-    PoseTextError,
 )
 from sdf_pose_bridge.sdformat.shapes import check_material, check_submesh, shape_of
 from sdf_pose_bridge.sdformat.sibling_names import check_scoped_names, SiblingNames
@@ -47,7 +47,6 @@ from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import URDF_TAGS
 from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
 from sdf_pose_bridge.sdformat.values import (
-    boolean_from_text,
     choice_fault,
     frame_of_attribute,
     judged_value,

@@ -14,12 +14,12 @@ from typing import NamedTuple
 import numpy as np
 
 from sdf_pose_bridge.errors import ElementInvalidError, ElementMissingError
+from sdf_pose_bridge.geometry.pose_attributes import boolean_from_text
 from sdf_pose_bridge.geometry.rotations import Floats, matrix_from_quaternion
 from sdf_pose_bridge.sdformat.grammar import ValueType
 from sdf_pose_bridge.sdformat.shape_types import Part, SHAPE_TYPES, Solid, Surface
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.values import (
-    boolean_from_text,
     number_of_child,
     numbers_from_text,
     numbers_of,

@@ -15,6 +15,8 @@ from collections.abc import Mapping
 import enum
 from typing import NamedTuple
 
+from sdf_pose_bridge.geometry.pose_attributes import ATTRIBUTES_OF_NUMBERS
+
 
 class Motion(enum.Enum):
     """The motion of a joint along or about an axis."""
@@ -187,8 +189,8 @@ _CONTENTS = {
         'enable_orientation:bool'),
     'include': '@merge:bool uri! pose plugin name static:bool placement_frame model_state',
     'inertia': 'ixx!,ixy!,ixz!,iyy!,iyz!,izz!:double',
-    'include/pose,audio_source/pose': ':pose @relative_to:frame @rotation_format @degrees:bool',
-    'inertial/pose': ':pose @rotation_format @degrees:bool',
+    'include/pose,audio_source/pose': f':pose @relative_to:frame {ATTRIBUTES_OF_NUMBERS}',
+    'inertial/pose': f':pose {ATTRIBUTES_OF_NUMBERS}',
     'insertions': 'model+=model light+=light joint+=joint',
     'intrinsics': 'fx!,fy!,cx!,cy!,s!:double',
     'joint/physics': 'simbody=joint_simbody ode=joint_ode provide_feedback:bool',
@@ -251,7 +253,7 @@ _CONTENTS = {
     'polyline': '/polyline_shape point+:vector2 height!:double',
     'population': '/ @name! box cylinder model_count!:int distribution! pose model!=model',
     'distribution': 'type! rows,cols:int step:vector3',
-    'pose': '/ :pose @relative_to^:frame @rotation_format @degrees:bool',
+    'pose': f'/ :pose @relative_to^:frame {ATTRIBUTES_OF_NUMBERS}',
     'position_sensing,velocity_sensing': 'horizontal vertical',
     'position_sensing/horizontal,position_sensing/vertical': 'noise',
     'pressure,vertical_position,vertical_velocity,x,y,z': 'noise',

@@ -14,6 +14,7 @@ import math
 import re
 import sys
 
+from sdf_pose_bridge.geometry.pose_attributes import boolean_from_text
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.sdformat.grammar import Item, ValueType
 from sdf_pose_bridge.sdformat.specification import Choice
@@ -47,7 +48,6 @@ _SHORTEST_AXIS = 9.999999974752427e-07
 """The float that is nearest to 1e-6, as libsdformat compares with it."""
 _SMALLEST_FLOAT, _LARGEST_FLOAT = 2.0 ** -126, (2.0 - 2.0 ** -23) * 2.0 ** 127
 _NOT_ZERO = re.compile(r'[^eE]*[1-9]')
-_BOOLEANS = {'true': True, '1': True, 'false': False, '0': False}
 TRUE_TEXTS = ('true', 'True', 'TRUE', '1')
 """The true values of the flags that are not read by type: ``merge`` and those of old versions."""
 _INTEGER_RANGES = {
@@ -57,16 +57,6 @@ _INTEGER_RANGES = {
 }
 _TYPES_BY_COUNT = {
     1: ValueType.NUMBER, 2: ValueType.TWO_NUMBERS, 3: ValueType.THREE_NUMBERS}
-
-
-def boolean_from_text(text: str) -> bool | None:
-    """
-    Read a boolean.
-
-    :param text: the value, stripped.
-    :return: the boolean; None if the text is not ``true``, ``false``, ``1`` or ``0`` in any case.
-    """
-    return _BOOLEANS.get(text.lower())
 
 
 def frame_of_attribute(xml: XmlElement, attribute: str) -> str:

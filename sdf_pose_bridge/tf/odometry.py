@@ -12,11 +12,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from sdf_pose_bridge.geometry.pose_attributes import PoseTextError
 from sdf_pose_bridge.geometry.poses import Pose, pose_inverse
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.poses import EULER_RPY, pose_from_text, PoseTextError
+from sdf_pose_bridge.sdformat.poses import EULER_RPY, pose_from_text
 from sdf_pose_bridge.tf.gazebo_bridge import bridged_topics
 from sdf_pose_bridge.tf.joint_motion import JointMotion
 

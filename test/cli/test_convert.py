@@ -334,7 +334,7 @@ def test_without_a_target_each_line_has_a_block(convert):
 
 
 def test_many_lines_keep_their_order_and_every_invalid_one_is_reported(convert, monkeypatch):
-    monkeypatch.setattr(convert_command, 'TEXTS_AT_A_TIME', 700)
+    monkeypatch.setattr(convert_command, 'CHARACTERS_AT_A_TIME', 7000)
     rows = [f'0 0 {0.001 * number}' for number in range(3000)]
     bad = (0, 699, 700, 1234, 1235, 2999)
     for number in bad:

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Sequences of rotations about three axes, compared with products of matrices."""
 
+import itertools
 import math
 
 from matrices import axis_rotation
@@ -14,9 +15,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion, quaternion_from_rpy
-from sdf_pose_bridge.geometry.sequences import XYZ, ZYX, ZYZ
+from sdf_pose_bridge.geometry.sequences import angle_sequence
 
-AXES = {'xyz': XYZ, 'zyx': ZYX, 'zyz': ZYZ}
+AXES = {axes: angle_sequence(axes) for axes in map(''.join, itertools.product('xyz', repeat=3))
+        if axes[0] != axes[1] != axes[2]}
 every_sequence = pytest.mark.parametrize('axes', AXES)
 angle = st.floats(-7.0, 7.0)
 
@@ -38,7 +40,7 @@ def test_angles_are_the_rotation_and_in_their_ranges(axes, rpy):
     sequence, quats = AXES[axes], quaternion_from_rpy(RPY_SETS[rpy](500))
     angles = sequence.numbers_from_quaternions(quats)
     assert largest_angle(quats, sequence.quaternions_from_numbers(angles)) <= 2 * MAX_ANGLE
-    lowest = 0.0 if axes == 'zyz' else -0.5 * math.pi
+    lowest = 0.0 if axes[0] == axes[2] else -0.5 * math.pi
     assert np.abs(angles).max() <= math.pi
     assert angles[:, 1].min() >= lowest
     assert angles[:, 1].max() <= lowest + math.pi
@@ -48,8 +50,8 @@ def test_angles_are_the_rotation_and_in_their_ranges(axes, rpy):
 @pytest.mark.parametrize('is_upper', [False, True])
 def test_at_lock_the_first_angle_is_zero(axes, is_upper):
     sequence = AXES[axes]
-    middle = (math.pi if axes == 'zyz' else 0.5 * math.pi) if is_upper else (
-        0.0 if axes == 'zyz' else -0.5 * math.pi)
+    middle = (math.pi if axes[0] == axes[2] else 0.5 * math.pi) if is_upper else (
+        0.0 if axes[0] == axes[2] else -0.5 * math.pi)
     quats = sequence.quaternions_from_numbers(np.array([[0.4, middle, 0.3]]))
     assert sequence.near_lock(quats).all()
     assert not sequence.are_canonical((0.4, middle, 0.3), math.pi)

@@ -18,7 +18,8 @@ from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.geometry.formats import converted_poses, POSE_FORMATS, PoseFormatError
 from sdf_pose_bridge.geometry.pose_texts import (
     number_from_text,
-    typed_pose_from_text,
+    only_pose,
+    typed_poses_from_text,
     TypedPose,
 )
 from sdf_pose_bridge.geometry.poses import pose_product, relative_pose
@@ -172,14 +173,15 @@ class PoseEdit:
         reference, pose, units = self._shown_for
         at = relative_pose(reference, pose)
         source = POSE_FORMATS['sdf_rpy']._replace(length=units.length, angle=units.angle)
-        pasted = [text for text in {*typed} - {*self._texts} if len(text.split()) > 1]
+        pasted = [text for text in {*typed} - {*self._texts} if not _is_number(text)]
         try:
             # Numbers that were not typed keep all their digits.
-            given = typed_pose_from_text(pasted[0], default=source) if pasted else TypedPose([
-                exact * unit.factor if text == shown else number_from_text(text)
-                for exact, text, shown, unit in zip(
-                    (*at[:3], *rpy_from_quaternion(at[3:])), typed, self._texts, units.of_pose,
-                    strict=True)], source)
+            given = only_pose(typed_poses_from_text(pasted[0], default=source) if pasted else [
+                TypedPose([
+                    exact * unit.factor if text == shown else number_from_text(text)
+                    for exact, text, shown, unit in zip(
+                        (*at[:3], *rpy_from_quaternion(at[3:])), typed, self._texts,
+                        units.of_pose, strict=True)], source)])
             new = Pose(*converted_poses(given.numbers, given.format, 'sdf_quat_xyzw').tolist())
             # A rotation alone leaves the position.
             pose = pose_product(
@@ -241,3 +243,11 @@ class PoseEdit:
         self._target = self._target[0], shown.pose_of(self._frame)
         self._set_pose(None)
         self._show_file(shown)
+
+
+def _is_number(text: str) -> bool:
+    try:
+        number_from_text(text)
+    except PoseFormatError:
+        return False
+    return True

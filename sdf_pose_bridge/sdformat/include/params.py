@@ -18,6 +18,7 @@ from sdf_pose_bridge.errors import (
     ElementInvalidError,
     ElementMissingError,
 )
+from sdf_pose_bridge.geometry.pose_attributes import FORMAT_ATTRIBUTES
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.sdformat.grammar import (
     Definition,
@@ -44,7 +45,6 @@ TOP_TAGS = [
 """The tags of elements that can be included, in the order of preference."""
 _OWN_ATTRIBUTES = ('element_id', 'action')
 _ACTIONS = ('add', 'modify', 'remove', 'replace')
-_POSE_FORMAT_ATTRIBUTES = frozenset({'degrees', 'rotation_format'})
 _PARTS = {
     path.partition('/')[0] for part in PARTS_OF_MODEL.values() for path, _ in part.references}
 """Child elements with references, which are defined in the file of their parent element."""
@@ -230,7 +230,7 @@ class _Changer:
                     definition is None or name not in definition.attributes):
                 msg = f'SDFormat defines no attribute {name} of <{written_tag(target)}>'
                 self._error(AttributeInvalidError, xml, msg)
-            elif (is_read_before and name in _POSE_FORMAT_ATTRIBUTES and target.tag == 'pose'
+            elif (is_read_before and name in FORMAT_ATTRIBUTES and target.tag == 'pose'
                     and text_of(target)):
                 if target.get(name) != value:
                     msg = (f'{name}="{value}" has no effect: libsdformat has read the numbers of '

@@ -125,11 +125,11 @@ def test_numbers_that_were_not_typed_stay_exact(edit, written):
 
 def test_typed_digits_stay(edit):
     show(edit)
-    for typed in ('0.123456', '0.1234561', ' 6.1e-05', '-.25'):
+    for typed in ('0.123456', '0.1234561', ' 6.1e-05', '-.25', '\u2212.5'):
         edit._numbers[0].value = typed
         show(edit)
         assert texts(edit)[0] == typed
-        assert edit.pose.x == pytest.approx(float(typed), abs=1e-12)
+        assert edit.pose.x == pytest.approx(float(typed.replace('\u2212', '-')), abs=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -153,7 +153,9 @@ def test_text_that_is_no_number_is_refused(edit, written, typed):
 @pytest.mark.parametrize(('pasted', 'yaw'), [
     ('<pose>1 2 3 0 0 0.5</pose>', 0.5), ('1 2 3 0 0 30', math.radians(30)),
     ('{X 1000, Y 2000, Z 3000, A 30, B 0, C 0}', math.radians(30)),
-    ('x: 0 y: 0 z: 1 w: 0', math.pi)])
+    ('x: 0 y: 0 z: 1 w: 0', math.pi), ('p[1,2,3,0,0,0.5]', 0.5),
+    ('xyz="1 2 3"rpy="0 0 0.5"', 0.5), ('1,2,3,0,0,30', math.radians(30)),
+    ('position:  x: 1  y: 2  z: 3orientation:  z: 0.6  w: 0.8', 2 * math.atan2(0.6, 0.8))])
 def test_pose_that_is_pasted_into_a_field_is_read_as_by_the_commands(edit, pasted, yaw):
     units, pose = Units(angle=DEGREES), Pose(1.0, 2.0, 3.0)
     show(edit, pose=pose, units=units)

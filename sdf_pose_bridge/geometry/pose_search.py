@@ -1,0 +1,383 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Find the poses in a text with names."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import islice, takewhile
+import re
+from typing import NamedTuple
+
+from sdf_pose_bridge.geometry import pose_names as tables
+from sdf_pose_bridge.geometry.formats import (
+    Format,
+    format_from_name,
+    POSE_FORMATS,
+    PoseFormatError,
+    ROTATION_FORMATS,
+)
+from sdf_pose_bridge.geometry.named_numbers import is_number, Named, named_from_text, SCALARS
+from sdf_pose_bridge.geometry.pose_attributes import (
+    boolean_from_text,
+    FORMAT_ATTRIBUTES,
+    pose_format_from_attributes,
+    PoseTextError,
+)
+from sdf_pose_bridge.geometry.pose_names import name_in_tables, Names, names_of, numbers_of
+from sdf_pose_bridge.geometry.units import DEGREES, RADIANS
+from sdf_pose_bridge.names import listed, shortened
+
+
+class FoundPose(NamedTuple):
+    """A pose or rotation in a text."""
+
+    words: Sequence[str]
+    """Its numbers, as they are written."""
+    format: Format
+    text: str
+    """The names that say the format, for people; empty if none does."""
+    path: tuple[str, ...]
+    """The names around it."""
+    notes: tuple[str, ...] = ()
+    """Clauses for people."""
+    name: str = ''
+    """The name of a pose in a list; empty if it has none."""
+
+    @property
+    def text_format(self) -> str:
+        """The name of the text as a format that is printed too, if it is one."""
+        return {'<pose>': 'sdf_pose', '<origin>': 'urdf_origin'}.get(self.text, self.text)
+
+
+def poses_from_text(text: str, source: Format | None) -> Sequence[FoundPose]:
+    """
+    Find a pose, or a list of poses.
+
+    :param source: the requested format, in which numbers are that other names do not define.
+    :return: none if no name is that of a pose.
+    :raises PoseFormatError: if names are missing, left over or there twice, or if several poses
+        are no list.
+    """
+    is_abb = source is not None and source.name == 'abb'
+    frames = [*tables.FRAME_OF_ABB.finditer(text)]
+    targets = [match for match in frames if match[2] or is_abb]
+    if len(targets) == 1:
+        words = re.findall(r'[^\s,\[\]]+', targets[0][1])
+        return [FoundPose(words, POSE_FORMATS['abb'], 'a target of ABB', ())]
+    search = _Search(named_from_text(text), source)
+    if frames[1:] and not search.poses:
+        search.faults.append((99, f'the text has {len(frames)} frames; give one with --from abb'))
+    if search.faults and not search.poses:
+        raise PoseFormatError(max(search.faults)[1])
+    return search.list_of_poses()
+
+
+def _plain(name: str) -> str:
+    """Return a name of a text without what tells it from others of the same name."""
+    return re.sub(r'\A<|>\d+\Z|\{\d+\Z', '', name)
+
+
+def _text(names: Sequence[str]) -> str:
+    return ' '.join(name.lstrip('@') for name in names)
+
+
+class _Search:
+    """Finds poses by the names in a text."""
+
+    def __init__(self, found: Sequence[Named], source: Format | None) -> None:
+        self.poses: list[FoundPose] = []
+        self.faults: list[tuple[int, str]] = []
+        """Why names are no pose, each with the number of those that are right."""
+        self._source = source
+        self._groups: dict[tuple[str, ...], dict[str, Named]] = {}
+        """By a path the names in it, and ``a.b`` for those in these."""
+        self._twice: set[tuple[tuple[str, ...], str]] = set()
+        self._others: dict[tuple[str, ...], Sequence[tuple[str, Named, bool]]] = {}
+        self._used: set[tuple[str, ...]] = set()
+        """The paths of what is in a pose or beside it."""
+        for each in found[1:]:
+            if not tables.PARTS_OF_ECHO.isdisjoint(each.path):
+                each.path = tuple(part for part in each.path if part[0] != '#')
+            if each.kind == 'element' and not each.words:
+                continue
+            around = each.around
+            name = name_in_tables(
+                each.name, is_attribute=around is not None and around.kind == 'element')
+            self._add(each.path[:-1], name, each)
+            if each.path[1:] and around is not None and around.name:
+                self._add(each.path[:-2], f'{name_in_tables(around.name)}.{name}', each)
+            if each.words and tables.UNIT.fullmatch(name) and not (
+                    around and around.kind == 'element' and around.name == 'pose'):
+                msg = f'"{shortened(name)}" is left over; numbers with units need names of these'
+                raise PoseFormatError(msg)
+        self._compiler = {
+            each.name: ' '.join(each.words) for each in found
+            if each.around is not None and each.around.name == 'compiler'}
+        for path, group in self._groups.items():
+            if not tables.KNOWN.isdisjoint(group):
+                self._read_group(path, group)
+        for each in found[1:]:
+            if each.path not in self._used and (each.words or each.kind == 'element'):
+                self._read_words(each)
+        self.poses = [each for each in self.poses if each.path not in self._used]
+        if not self.poses and source is not None:
+            self.poses = [
+                FoundPose(numbers, source, '', each.path) for each in found[1:]
+                if len(numbers := numbers_of(each)[0]) == source.row_length]
+
+    def _add(self, path: tuple[str, ...], name: str, named: Named) -> None:
+        group = self._groups.setdefault(path, {})
+        if name in group:
+            self._twice.add((path, name))
+        group[name] = named
+
+    def _fault(self, nearness: int, message: str) -> None:
+        self.faults.append((nearness, message))
+
+    def list_of_poses(self) -> Sequence[FoundPose]:
+        """Return the poses; several ones have names, and are at the same depth in one list."""
+        if not self.poses[1:]:
+            return self.poses
+        paths = [pose.path for pose in self.poses]
+        places = [place for place, parts in enumerate(zip(*paths, strict=False)) if {*parts} != {
+            paths[0][place]}]
+        if len(places) != 1 or len({*map(len, paths)}) > 1 or len(
+                {pose.format.name for pose in self.poses}) > 1:
+            names = dict.fromkeys('.'.join(map(_plain, path)) for path in paths)
+            msg = f'the text has several poses, which are no list: {listed([*names], 3)}'
+            raise PoseFormatError(msg)
+        return [pose._replace(name=self._name_of(pose.path, places[0])) for pose in self.poses]
+
+    def _name_of(self, path: tuple[str, ...], place: int) -> str:
+        """Return the name of an item of a list, at a place of its path; empty if it has none."""
+        for end in range(len(path), place, -1):
+            for name in ('child_frame_id', 'name'):
+                if (named := self._groups.get(path[:end], {}).get(name)) is not None:
+                    return ' '.join(named.words)
+        return '' if path[place][0] in '#<' or path[place] != _plain(path[place]) else path[place]
+
+    # Names of a group
+
+    def _read_group(self, path: tuple[str, ...], group: Mapping[str, Named]) -> None:
+        for form, text in tables.MAKERS:
+            if (part := self._part(group, (form,))) is not None:
+                self._add_pose(
+                    path, group, form.names, part[0], POSE_FORMATS[form.rotation], text)
+                return
+        arguments = group.get('args') or group.get('arguments')
+        if arguments and any(each.words == [tables.PUBLISHER] for each in group.values()):
+            self._read_publisher(' '.join(arguments.words).split(), path)
+        position = self._part(group, tables.POSITIONS)
+        rotation = self._part(group, tables.ROTATIONS)
+        part = position or rotation
+        if part is None:
+            return
+        around = next((_plain(each).lower() for each in reversed(path) if each[0] != '#'), '')
+        if position and not rotation and 'w' in group and around in ('', 'quaternion'):
+            quaternion = self._part(group, (names_of('x y z w'),))
+            if quaternion is not None:
+                self._add_pose(path, group, quaternion[1].names, quaternion[0],
+                               ROTATION_FORMATS['quaternion'], 'x y z w')
+            return
+        first, _, is_dotted = part[1].names[0].partition('.')
+        may_be_missing = around == 'origin' or first[:2] == '--' or bool(
+            is_dotted and around in ('pose', 'poses') and first in group
+            and group[first].name.lower() in tables.OF_ROS)
+        others = {name for each in (tables.ROTATIONS if position else tables.POSITIONS)
+                  for name in (*each.names, each.names[0].partition('.')[0]) if name in group}
+        may_be_missing = may_be_missing and not others
+        if not rotation and (may_be_missing or part[1].names[0] == '@pos'):
+            rotation = [*'000'], names_of('', 'rpy')
+        if not position and may_be_missing:
+            position = [*'000'], names_of('')
+        if position and rotation:
+            self._read_parts(path, group, position, rotation)
+            return
+        what = 'rotation' if position else 'position, such as x y z'
+        if others - {*part[1].names} - {'t', 'T'}:
+            hint = '' if all(len(group[each].words) != 4 for each in others) else (
+                '; the order of four numbers is not said: x y z w is sdf_quat_xyzw, and w x y z is'
+                ' mujoco')
+            raise PoseFormatError(max(self.faults, default=(0, ''))[1] or (
+                f'"{listed([*others])}" beside {_text(part[1].names)} is no {what}{hint}'))
+        if position or part[1].rotation != 'matrix':
+            self._fault(len(part[0]), f'the text has {_text(part[1].names)} without a {what}')
+
+    def _read_parts(
+        self, path: tuple[str, ...], group: Mapping[str, Named],
+        position: tuple[Sequence[str], Names], rotation: tuple[Sequence[str], Names],
+    ) -> None:
+        (x, y, z), words = position[0], [*position[0], *rotation[0]]
+        kind, names = rotation[1].rotation, position[1].names + rotation[1].names
+        text = '<origin>' if path and _plain(path[-1]) == 'origin' else (
+            tables.PUBLISHER if names[0][:2] == '--' else ', '.join(dict.fromkeys(
+                _plain(group[name].path[len(path)]) for name in names if name in group)))
+        if kind == 'matrix':
+            rows = rotation[0]
+            words = [*rows[:3], x, *rows[3:6], y, *rows[6:], z, *tables.LAST_ROW]
+        if kind == 'euler':
+            axes = self._compiler.get('eulerseq', 'xyz')
+            pose_format = format_from_name(
+                f'{"r" if axes.islower() else "s"}{axes.lower()}', POSE_FORMATS)._replace(
+                angle=RADIANS if self._compiler.get('angle') == 'radian' else DEGREES)
+        else:
+            pose_format = POSE_FORMATS[tables.POSE_OF_ROTATION[kind]]
+        self._add_pose(path, group, names, words, pose_format, text)
+
+    def _part(
+        self, group: Mapping[str, Named], parts: Sequence[Names],
+    ) -> tuple[Sequence[str], Names] | None:
+        """Return the numbers of a position or a rotation, and its names."""
+        for part in parts:
+            hits = [name for name in part.names if name in group]
+            around = group.get(part.names[0].rpartition('.')[0])
+            if not hits and not (part.missing and around and not around.words and not any(
+                    name.startswith(f'{part.names[0].partition(".")[0]}.') for name in group)):
+                continue
+            numbers = {name: numbers_of(group[name])[0] for name in hits}
+            wrong = [name for name in hits if len(numbers[name]) != part.width]
+            missing, filled = [name for name in part.names if name not in hits], part.missing
+            if around and around.name.lower() not in tables.OF_ROS:
+                filled = ()
+            if filled == tables.LAST_ROW and around and part.names[3] in missing and any(
+                    float(number) for each in numbers.values() for number in each):
+                # Protobuf leaves out zeros. In a message of ROS, 1 would be the default.
+                is_protobuf = around.kind == 'opening'
+                filled, missing = ((*'0000',), missing) if is_protobuf else ((), missing[-1:])
+            if wrong:
+                is_one, words = part.width == 1, group[wrong[0]].words
+                # Lists of other lengths may be of other names.
+                if is_one or not all(map(is_number, words)):
+                    text = ' '.join(words)
+                    hint = '; replace it first, as xacro does' if '$' in text else ''
+                    self._fault(len(hits), f'"{_text(wrong[:1])}" is {shortened(text)!r}, not'
+                                f' {"a number" if is_one else f"{part.width} numbers"}{hint}')
+            elif missing and not filled:
+                self._fault(len(hits), f'{_text(missing)} is missing beside {_text(hits)}')
+            else:
+                words = [word for index, name in enumerate(part.names)
+                         for word in numbers.get(name, filled[index:index + 1])]
+                return words, part._replace(names=(*hits,) or part.names)
+        return None
+
+    def _add_pose(
+        self, path: tuple[str, ...], group: Mapping[str, Named], names: Sequence[str],
+        words: Sequence[str], pose_format: Format, text: str,
+    ) -> None:
+        """Add a pose; raise an error for names twice, and for those that are left over."""
+        around = {name.rpartition('.')[0] for name in names}
+        is_mjcf = any(name[:1] == '@' for name in names)
+        for name, named in group.items():
+            numbers, unit = numbers_of(named)
+            if name in names or name in around or name == 'matrix':
+                self._used.add(named.path)
+            if name in names:
+                has_unit = unit in ('', pose_format.length.name, pose_format.angle and (
+                    pose_format.angle.name))
+                what = '' if has_unit else f'is in {unit}, and {pose_format.name} is not'
+                if (path, name) in self._twice:
+                    what = 'is given twice'
+            elif name in around or named.path[len(path)][0] == '<' or (
+                    tables.BESIDE.fullmatch(name)) or (
+                    is_mjcf and tables.BESIDE_MJCF.fullmatch(name)):
+                what = ''
+            else:
+                is_about = numbers or (named.words and tables.CHANGES.fullmatch(name))
+                what = 'is left over beside the pose' if is_about else ''
+            if what:
+                msg = f'"{shortened(name.lstrip("@"))}" {what}'
+                raise PoseFormatError(msg)
+        self.poses.append(FoundPose(words, pose_format, text, path))
+
+    # Words of one name
+
+    def _read_words(self, named: Named) -> None:
+        name, words = named.name.split(' ')[-1], named.words
+        if name == 'pose' and named.kind == 'element':
+            self._read_element(named)
+        elif name == 'origin' and named.kind == 'element':
+            if named.path not in self._groups:
+                self.poses.append(
+                    FoundPose([*'000000'], POSE_FORMATS['sdf_rpy'], '<origin>', named.path))
+        elif name == tables.PUBLISHER:
+            self._read_publisher(words, named.path)
+        elif name in tables.CALLS and named.kind == 'opening':
+            maker, text = tables.CALLS[name]
+            if len(words) != 6:
+                self._fault(6, f'{text} has 6 numbers, and this one {len(words)}')
+                return
+            self.poses.append(FoundPose(words, POSE_FORMATS[maker], text, named.path))
+        elif len(numbers := numbers_of(named)[0]) >= 9 and not tables.NO_POSE.fullmatch(
+                named.name.lower()):
+            self._read_matrix(named, numbers)
+
+    def _read_matrix(self, named: Named, numbers: Sequence[str]) -> None:
+        name, is_pose = named.name, len(numbers) in (12, 16)
+        if len(numbers) not in (9, 12, 16):
+            if len(numbers) < 16:
+                self._fault(1, f'"{shortened(name)}" has {len(numbers)} numbers; a matrix'
+                               ' has 9, 12 or 16')
+            return
+        for other, each, is_about in self._beside(named.path[:-1]):
+            if is_about or not (is_pose or each is named):
+                msg = f'"{shortened(other)}" is left over beside {shortened(name)}'
+                raise PoseFormatError(msg)
+        wanted = self._source
+        columns = len(wanted.columns) if wanted else 0
+        order = 'franka_matrix' if tables.COLUMN_MAJOR.fullmatch(name) else 'matrix_row_major'
+        pose_format = wanted if wanted and columns == 9 and bool(wanted.position) is is_pose else (
+            POSE_FORMATS[order] if is_pose else ROTATION_FORMATS['matrix'])
+        if len(numbers) == 12 and pose_format.last_row[0] != 12:
+            self._fault(12, f'"{shortened(name)}" has 12 numbers, and {pose_format.name} has 16')
+        else:
+            self.poses.append(FoundPose(
+                [*numbers, *(tables.LAST_ROW if len(numbers) == 12 else ())], pose_format,
+                f'the matrix {shortened(name)}', named.path))
+
+    def _beside(self, path: tuple[str, ...]) -> Sequence[tuple[str, Named, bool]]:
+        """Return the first names in a group with numbers, or words about them."""
+        if path not in self._others:
+            self._others[path] = [*islice((
+                (name, each, is_about) for name, each in self._groups[path].items()
+                if (is_about := bool(each.words and tables.CHANGES.fullmatch(name))) or (
+                    numbers_of(each)[0] and not tables.BESIDE.fullmatch(name)
+                    and not tables.NO_POSE.fullmatch(name))), 2)]
+        return self._others[path]
+
+    def _read_publisher(self, words: Sequence[str], path: tuple[str, ...]) -> None:
+        numbers = [*takewhile(is_number, words)]
+        if len(numbers) == 6:  # x y z yaw pitch roll
+            numbers[3:] = numbers[:2:-1]
+        if len(numbers) in (6, 7):
+            name = 'sdf_rpy' if len(numbers) == 6 else 'sdf_quat_xyzw'
+            self.poses.append(FoundPose(numbers, POSE_FORMATS[name], tables.PUBLISHER, path))
+        elif words and words[0][:2] != '--':
+            self._fault(9, f'{tables.PUBLISHER} has {len(numbers)} numbers; it takes x y z'
+                           ' yaw pitch roll, or x y z qx qy qz qw')
+
+    def _read_element(self, named: Named) -> None:
+        """Read a ``<pose>`` of SDFormat, by its attributes."""
+        attributes = {name: ' '.join(each.words)
+                      for name, each in self._groups.get(named.path, {}).items()}
+        if not attributes.keys().isdisjoint(SCALARS):
+            return
+        try:
+            is_quaternion, is_degrees = pose_format_from_attributes(
+                lambda name: attributes.get(name, ''))
+            if (degrees := attributes.get('degrees')) and boolean_from_text(degrees) is None:
+                msg = f'degrees="{shortened(degrees)}" is not a boolean (true, false, 1 or 0)'
+                raise PoseTextError(msg)
+        except PoseTextError as error:
+            raise PoseFormatError(str(error)) from error
+        pose_format = POSE_FORMATS['sdf_quat_xyzw' if is_quaternion else (
+            'sdf_rpy_degrees' if is_degrees else 'sdf_rpy')]
+        words = named.words or [*'0000001'[:pose_format.row_length]]
+        if len(words) != pose_format.row_length or not all(map(is_number, words)):
+            msg = (f'<pose> has {pose_format.row_length} numbers ({pose_format.meaning}), and this'
+                   f' one "{shortened(" ".join(words))}"')
+            raise PoseFormatError(msg)
+        self.poses.append(FoundPose(words, pose_format, '<pose>', named.path, (*(
+            f'{shortened(name)}="{shortened(value)}" of <pose> is not defined in SDFormat'
+            for name, value in attributes.items()
+            if name not in ('relative_to', *FORMAT_ATTRIBUTES)),)))

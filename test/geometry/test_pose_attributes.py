@@ -1,0 +1,33 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The attributes of a pose are those of its elements in the specification."""
+
+import pytest
+
+from sdf_pose_bridge.geometry.pose_attributes import (
+    FORMAT_ATTRIBUTES,
+    pose_format_from_attributes,
+    PoseFormat,
+    PoseTextError,
+)
+from sdf_pose_bridge.sdformat.grammar import definition_of
+
+
+@pytest.mark.parametrize('name', ['pose', 'include/pose', 'inertial/pose', 'audio_source/pose'])
+def test_each_pose_has_these_attributes(name):
+    assert {*FORMAT_ATTRIBUTES} <= definition_of(name).attributes.keys() <= {
+        'relative_to', *FORMAT_ATTRIBUTES}
+
+
+@pytest.mark.parametrize(('attributes', 'expected'), [
+    ({}, PoseFormat()), ({'degrees': 'True'}, PoseFormat(is_degrees=True)),
+    ({'rotation_format': 'quat_xyzw'}, PoseFormat(is_quaternion=True))])
+def test_attributes_are_a_format(attributes, expected):
+    assert pose_format_from_attributes(lambda name: attributes.get(name, '')) == expected
+
+
+@pytest.mark.parametrize('attributes', [
+    {'rotation_format': 'quat'}, {'rotation_format': 'quat_xyzw', 'degrees': '1'}])
+def test_wrong_attributes_are_refused(attributes):
+    with pytest.raises(PoseTextError):
+        pose_format_from_attributes(lambda name: attributes.get(name, ''))
