@@ -15,6 +15,7 @@ from sdf_pose_bridge.process_limits import (
     limited,
     LimitExceededError,
     raise_limits,
+    renew_limits,
 )
 
 AMPLE = Allowance(
@@ -38,6 +39,17 @@ def test_a_request_for_more_memory_is_an_error():
     with pytest.raises(LimitExceededError) as caught, limited(AMPLE):
         bytearray(1_500_000_000)
     assert str(caught.value) == 'more than 1000 MB of memory'
+
+
+def test_the_processor_time_can_be_renewed(monkeypatch):
+    with limited(AMPLE):
+        before = soft_limits()
+        used_s = time.process_time()
+        monkeypatch.setattr(time, 'process_time', lambda: used_s + 50.0)
+        renew_limits()
+        assert [b - a for a, b in zip(before, soft_limits(), strict=True)] in (
+            [50, 0], [51, 0])
+    renew_limits()
 
 
 def test_other_exceptions_pass():

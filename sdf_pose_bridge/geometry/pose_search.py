@@ -305,8 +305,8 @@ class _Search:
         elif name in tables.CALLS and named.kind == 'opening':
             maker, text = tables.CALLS[name]
             if len(words) != 6:
-                self._fault(6, f'{text} has 6 numbers, and this one {len(words)}')
-                return
+                msg = f'{text} has 6 numbers, and this one {len(words)}'
+                raise PoseFormatError(msg)
             self.poses.append(FoundPose(words, POSE_FORMATS[maker], text, named.path))
         elif len(numbers := numbers_of(named)[0]) >= 9 and not tables.NO_POSE.fullmatch(
                 named.name.lower()):

@@ -39,7 +39,7 @@ _FIRST_NUMBER = re.compile(r'[\s\[({]*[-+.]?\d|\s*\Z')
 _NUMBERS = re.compile(r'[\s\d.,;eE+\[\]-]+')
 _NAME = re.compile(
     r'\s*(?:- |At time\b|["\']?\w+["\']?:(?:\s|$)|[\w.]+\s*=\s*[-+.\d]|\w+\s*\{\s*$|<[?!])')
-_FIRST_OF_TEXT = re.compile(r'[-+.]?\d|[\[({<]|--\w')
+_FIRST_OF_TEXT = re.compile(r'[-+.]?\d|[\[({<]|--\w|\w+ ?[\[(]')
 _BEGIN, _END = re.compile('<[A-Za-z]|<!--'), re.compile('</|/>|-->')
 
 _MINUS = '\u2212'

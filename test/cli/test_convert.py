@@ -275,6 +275,37 @@ def test_a_text_of_several_lines_is_one_pose_or_one_error(convert):
     assert len(err.splitlines()) == 1
 
 
+def test_a_list_of_poses_is_a_line_each_with_its_name(convert):
+    pose = '{position: {x: 1, y: 2, z: 3}, orientation: {w: 1}}'
+    code, out, _ = convert('--to', 'sdf_rpy', lines=f'a: {pose}\nb: {pose}\np[1]\n')
+    row = '1.0 2.0 3.0 0.0 0.0 0.0'
+    assert (code, out) == (1, f'# a\n{row}\n# b\n{row}\n# line 3 is not converted\n')
+    assert convert('--to', 'sdf_rpy', f'poses: [{pose}, {pose}]')[1] == 2 * f'{row}\n'
+
+
+def test_a_dash_is_the_standard_input(printed):
+    assert printed('--from', 'rpy', '--to', 'rpy', '-', lines='0 0 1\n') == '0.0 0.0 1.0\n'
+
+
+@pytest.mark.parametrize('source', ['rzyz', 'sxyz'])
+def test_a_sequence_of_axes_has_poses_and_rotations(convert, source):
+    code, out, err = convert(
+        '--from', source, '--degrees', '--to', source, lines='10 20 30\n1 2 3 10 20 30\n')
+    assert code == 0
+    assert [numbers(line) for line in out.splitlines()] == [
+        pytest.approx([*position, *np.radians([10, 20, 30])]) for position in ((), (1, 2, 3))]
+    assert f'read as {source}: x y z in metres, angles in degrees' in err
+    assert f'{source} has no lengths' in convert('--from', source, '--mm', *'123')[2]
+    assert convert('--from', source[1:].upper(), *'123')[::2] == (2, (
+        f'sdf_pose convert: no format "{source[1:].upper()}"; with fixed axes it is '
+        f's{source[1:]}, with turning ones r{source[1:]}\n'))
+
+
+def test_questions_that_differ_in_numbers_are_asked_once(convert):
+    _, _, err = convert('--from', 'rpy', lines='0 0 90\n0 0 x\n0 0 80\n0 0 x\n0 0 70\n')
+    assert err.count('did you mean --degrees') == 1
+
+
 @pytest.mark.parametrize(('lines', 'expected'), [
     ('# a b\n\n  \n 0 0 1\n  #\n', '0.0 0.0 1.0\n'), ('', '')])
 def test_blank_lines_and_comments_are_skipped(printed, lines, expected):
