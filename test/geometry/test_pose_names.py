@@ -14,6 +14,9 @@ POSE = '{position: {x: 1, y: 2, z: 3}, orientation: {x: 0, y: 0, z: 0.6, w: 0.8}
 SCALARS = 'x: 1\ny: 2\nz: 3\nroll: 0\npitch: 0\nyaw: 1.287002218\n'
 ROWS = '[0.28, -0.96, 0, 1], [0.96, 0.28, 0, 2], [0, 0, 1, 3]'
 FLAT = '0.28, -0.96, 0, 1, 0.96, 0.28, 0, 2, 0, 0, 1, 3'
+LINES_IN_ONE = (
+    'header: stamp: sec: 5 nanosec: 7 frame_id: a pose: pose: position: x: 1 y: 2 z: 3'
+    ' orientation: x: 0 y: 0 z: 0.6 w: 0.8 covariance: - 0.0 - 0.0 twist: twist: linear: x: 0')
 GAZEBO = """pose {
   name: "a"
   id: 8
@@ -52,11 +55,12 @@ MUJOCO = """<mujoco><compiler angle="radian" eulerseq="XYZ"/>
 
 
 @pytest.mark.parametrize('text', [
-    SCALARS, GAZEBO, FANUC, LAUNCH, PYTHON_LAUNCH, MUJOCO, POSE,
+    SCALARS, LINES_IN_ONE, GAZEBO, FANUC, LAUNCH, PYTHON_LAUNCH, MUJOCO, POSE,
     'sensor:\n  ' + SCALARS.replace('\n', '\n  '), SCALARS.replace('\n', ', '),
     'xyz: [1, 2, 3]\nrpy: [0, 0, 1.287002218]\n', 'xyz="1 2 3" rpy="0 0 1.287002218"',
     f'a: {POSE} # the end', f'{{"a": {POSE}, "b": {{"x": 5}}}}', f'"{POSE}"',
     POSE.replace('x: 0, y: 0, ', ''), f'header: {{stamp: {{sec: 5}}}}\npose:\n  pose: {POSE}\n',
+    'rotation: w: 0.8 x: 0 y: 0 z: 0.6 translation: x: 1 y: 2 z: 3',
     'rotation: {x: 0, y: 0, z: 0.6, w: 0.8}\ntranslation: {z: 3, y: 2, x: 1}',
     'cam:\n  intrinsics: [9, 9, 4, 4]\n  T_a_b:\n  - ' + ROWS.replace('], ', ']\n  - ') + '\n',
     f'T: !!opencv-matrix\n  rows: 3\n  cols: 4\n  dt: d\n  data: [{FLAT}]\n',
