@@ -18,6 +18,7 @@ from typing import NamedTuple, TypeAlias
 from lxml import etree
 
 from sdf_pose_bridge.errors import MergeIncludeError
+from sdf_pose_bridge.geometry.pose_attributes import PoseTextError
 from sdf_pose_bridge.geometry.poses import Pose, pose_product
 from sdf_pose_bridge.names import (
     MODEL_FRAME,
@@ -31,12 +32,7 @@ from sdf_pose_bridge.sdformat.grammar import (
     Kind,
     PARTS_OF_MODEL,
 )
-from sdf_pose_bridge.sdformat.poses import (
-    pose_format_of,
-    pose_from_text,
-    PoseTextError,
-    text_from_pose,
-)
+from sdf_pose_bridge.sdformat.poses import pose_format_of, pose_from_text, text_from_pose
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import (
     attribute_of,

@@ -15,7 +15,7 @@ pytest.importorskip('viser', reason='needs viser')
 from sdf_pose_bridge.cli.viewer.frame_texts import html_of_tree
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.geometry.formats import PoseFormatError
-from sdf_pose_bridge.geometry.pose_texts import number_from_text, typed_pose_from_text
+from sdf_pose_bridge.geometry.pose_texts import number_from_text, typed_poses_from_text
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.tf.tree import TfOptions
 
@@ -29,7 +29,7 @@ FIELDS = {
     'search': lambda n: partial(
         html_of_tree, ShownScene(load_text(links(n // 20)), TfOptions()), 'x' * n, '', (), ()),
     'self._name': lambda n: partial(number_from_text, '1' * n),  # of a joint
-    'label': lambda n: partial(typed_pose_from_text, '1 ' * n),  # of a number of a pose
+    'label': lambda n: partial(typed_poses_from_text, '1 ' * n),  # of a number of a pose
 }
 """For each field, what reads n characters in it."""
 
