@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 import contextlib
 from functools import partial
 import importlib
@@ -38,6 +38,7 @@ from sdf_pose_bridge.geometry.units import Units
 from sdf_pose_bridge.limited_process import LimitedProcess
 from sdf_pose_bridge.problems import errors_of_process
 from sdf_pose_bridge.process_limits import FOR_FILES
+from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.pose_setting import pose_change
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.file_change import replace_file
@@ -47,6 +48,7 @@ from sdf_pose_bridge.sdformat.include.uris import resource_finder
 _FORMATS = ('.html', '.png')
 _PORT = 8080
 _PERIOD_S, _SETTLING_S = 0.05, 0.03
+_EMPTY = b'<sdf version="1.11"><world name="empty"/></sdf>'
 
 BROWSERS = ('chromium', 'chromium-browser', 'google-chrome', 'chrome')
 # WebGL in software if there is no graphics card; no requests except from the page.
@@ -97,8 +99,15 @@ def run(options: argparse.Namespace) -> int:
     # It is made before the server starts threads.
     with contextlib.closing(LimitedProcess()) as process:
         load, read_since_ns = partial(_scene, process, options), time.time_ns()
-        scene = load()
-        print_problems((), scene.warnings, sys.stderr)
+        errors: Sequence[SdfError] = ()
+        try:
+            scene = load()
+        except SdfError as error:
+            # The page waits until the file is mended.
+            if options.output is not None or options.model or not Path(options.files[0]).is_file():
+                raise
+            scene, errors = load_text(_EMPTY, options.files[0]), error.errors
+        print_problems(errors, scene.warnings, sys.stderr)
         meshes = viewer.MeshReader(resource_finder(options.resource_paths), process)
         try:
             pages = viewer.Pages(
@@ -108,16 +117,20 @@ def run(options: argparse.Namespace) -> int:
         except UntestedViserError as error:
             raise CommandError(str(error)) from error
         with contextlib.closing(pages):
-            for line in pages.reasons:
+            for line in () if errors else pages.reasons:
                 print(f'sdf_pose view: {line}', file=sys.stderr)
             if options.output is not None:
                 _write(pages.html(), options.output, {*scene.files, *meshes.files})
                 return 0
+            if errors:
+                pages.show_errors(map(str, errors))
             _open(pages.address, options.port)
             watcher = FileWatcher()
             # The standard input cannot be read again.
             watcher.watch(
-                () if options.files[0] == STANDARD_INPUT else scene.files, read_since_ns)
+                () if options.files[0] == STANDARD_INPUT else {
+                    *scene.files, *(str(error.place.file) for error in errors if error.place)},
+                read_since_ns)
             while True:
                 _follow(pages, watcher, load)
 

@@ -84,7 +84,9 @@ class VisiblePart:
             scene, bodies, _extent_m(origins, scene.poses[bodies, :3]), meshes)
         """The surfaces of visuals and collisions."""
         self.reasons = lines_from_not_drawn(not_drawn)
-        """Lines that say which visuals and collisions cannot be drawn."""
+        """Lines that say which shapes cannot be drawn, or that there are no frames."""
+        if not len(ids):
+            self.reasons.append('this file has no frames')
         self.names = json.dumps({
             'frames': [printable(ids[frame]) for frame in self.frames],
             'bodies': [
@@ -101,7 +103,9 @@ class VisiblePart:
         origins = origins[self.frames]
         bounds = bounds_of_interest(origins, boxes, np.concatenate([
             origins[shown.is_in_robot[elements[self.frames]]],
-            boxes[shown.is_in_robot[self._bodies]].mean(axis=1)]))
+            # A model alone is shown as a whole.
+            boxes[shown.is_in_robot[self._bodies]].mean(axis=1) if scene.world_names
+            else boxes.reshape(-1, 3)]))
         self.view_m = math.dist(*bounds) or self.size_m
         """The extent of the first view, without axes."""
         self.axes_length_m = _length_of_axes(tree, self.view_m)
@@ -221,6 +225,7 @@ class Drawing:
         if 'grid' in visible.hidden:
             return
         spacing_m = grid_spacing_m(visible.view_m)
+        text = f'{spacing_m:g} m' if spacing_m >= 0.01 else f'{1000.0 * spacing_m:g} mm'
         middle = np.round(visible.bounds.mean(axis=0)[:2] / spacing_m) * spacing_m
         width_m = 2.0 * spacing_m * np.ceil(visible.view_m / spacing_m)
         # A little above the floors of many files.
@@ -231,7 +236,7 @@ class Drawing:
             position=(*middle, height_m))
         to_camera = 0.2 * (visible.home.position - visible.home.look_at)[:2]
         nodes.add_label(
-            f'{name}/grid spacing', f'grid {spacing_m:g} m', font_screen_scale=0.8,
+            f'{name}/grid spacing', f'grid {text}', font_screen_scale=0.8,
             position=(*(middle + spacing_m * np.round(to_camera / spacing_m)), height_m))
 
     def _add_surface(self, number: int, surface: DrawnSurface) -> Any:

@@ -161,6 +161,8 @@ class Page:
                 self._switches.remove()
                 self._switches = self._add_switches(self._switches.order)
             self._refresh()
+            if not before.tree.frame_ids:
+                self._look('home')
 
     def show_errors(self, errors: str) -> None:
         """Show the errors of the file, in HTML, over its last scene."""

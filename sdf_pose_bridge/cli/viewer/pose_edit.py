@@ -48,6 +48,7 @@ class PoseEdit:
         self._change: PoseChange | None = None
         self._looked_at: tuple[object, ...] = ()
         self._notes: tuple[str, ...] = ()
+        self._failures: tuple[str, ...] = ()
         self._question = ''
         """A question about the typed numbers, which writing them answers."""
         self._errors: list[str] = []
@@ -154,12 +155,12 @@ class PoseEdit:
         buttons = (f'<button data-ask="{label}">{label}</button>' for label in self.actions)
         # Before anything is changed, they are only the reason why nothing can be.
         errors = html_of_lines('errors' if self.pose else 'errors_of_setting', self._errors)
-        notes = html_of_lines(
-            'errors', filter(None, (*self._notes, self._question, self._refusal)))
+        notes = html_of_lines('notes', self._notes) + html_of_lines(
+            'errors', filter(None, (*self._failures, self._question, self._refusal)))
         return f'{text}{notes}{errors}{"".join(buttons)}'
 
     def _set_pose(self, pose: Pose | None, *notes: str, question: str = '') -> None:
-        self.pose, self._notes, self._question = pose, notes, question
+        self.pose, self._notes, self._failures, self._question = pose, notes, (), question
         if pose is None:
             self._errors, self._refusal = [], ''
             # Also clear the rejected text.
@@ -235,7 +236,7 @@ class PoseEdit:
         try:
             change.file.write()
         except SdfError as error:
-            self._notes = tuple(map(str, error.errors))
+            self._failures = tuple(map(str, error.errors))
             return
         shown = self._shown.at(self._shown.positions, change.scene)
         self._undone = [*self._undone, undone] if undone else self._undone[:-1]

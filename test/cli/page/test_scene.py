@@ -17,6 +17,7 @@ from shown_page import (
     is_in_window,
     LABELS,
     point_on_screen,
+    ROWS,
     run_view,
     select,
     TEXT,
@@ -105,6 +106,16 @@ def test_axes_of_the_root_frame_are_in_a_corner(page):
         for axis in (0, 2))
     assert x_end > 5
     assert z_end < -15
+
+
+def test_file_that_is_broken_at_first_is_shown_when_it_is_mended(tab, tmp_path):
+    (tmp_path / 'cell.sdf').write_text(TEXT.replace('<parent>base', '<parent>bass'))
+    with view_of(tmp_path) as address:
+        tab.open(address)
+        tab.wait_for("document.querySelector('.strip .errors')?.innerText.includes('bass')")
+        (tmp_path / 'cell.sdf').write_text(TEXT)
+        tab.wait_for(f"{ROWS}.length === 5 && !document.querySelector('.errors')")
+        wait_for_name_at(tab, *point_on_screen(tab, (0.1, -0.1, 0.09)), 'arm/base, visual v')
 
 
 def test_dark_page_of_a_dark_system_and_a_tab_whose_program_has_ended(tab, tmp_path):

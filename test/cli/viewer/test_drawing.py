@@ -6,7 +6,7 @@ import json
 import math
 
 import pytest
-from sdf_texts import model_file
+from sdf_texts import model_file, world_file
 
 pytest.importorskip('trimesh', reason='needs trimesh')
 pytest.importorskip('viser', reason='needs viser')
@@ -25,11 +25,33 @@ BOX = '<geometry><box/></geometry>'
 @pytest.fixture
 def drawing_of(server, mesh_reader):
     """Returns the drawing of a model with these elements, and its scene."""
-    def draw(content, hidden=()):
-        shown = ShownScene(load_text(model_file(content), 'm.sdf', shapes=True), TfOptions())
+    def draw(content, hidden=(), text_of_file=model_file):
+        shown = ShownScene(load_text(text_of_file(content), 'm.sdf', shapes=True), TfOptions())
         return Drawing(
             server.scene, '/drawing', VisiblePart(shown, mesh_reader, hidden), print), shown
     return draw
+
+
+def test_home_view_has_the_whole_of_a_model_alone(drawing_of):
+    drawing, _ = drawing_of(
+        '<link name="hand"><pose>0.2 0 0 0 0 0</pose></link>'
+        f'<link name="case"><visual name="v">{BOX}</visual></link>')
+    low, high = drawing.visible.bounds
+    assert (low <= -0.5).all()
+    assert (high >= 0.5).all()
+
+
+def test_grid_of_a_small_part_has_millimetres(drawing_of, server, monkeypatch):
+    labels = []
+    monkeypatch.setattr(server.scene, 'add_label', lambda _, text, **options: labels.append(text))
+    drawing_of('<link name="a"/><frame name="b"><pose>0.001 0 0 0 0 0</pose></frame>')
+    assert labels == ['grid 0.1 mm']
+
+
+def test_empty_world_says_that_it_is_empty(mesh_reader):
+    scene = load_text(b'<sdf version="1.11"><world name="w"/></sdf>', 'w.sdf', shapes=True)
+    visible = VisiblePart(ShownScene(scene, TfOptions()), mesh_reader)
+    assert visible.reasons == ['this file has no frames']
 
 
 def test_names_of_bodies_are_in_the_order_of_the_nodes(drawing_of):
@@ -76,7 +98,8 @@ def test_name_of_a_missing_mesh_precedes_those_of_frames(drawing_of):
 @pytest.mark.parametrize(('size', 'ground_m'), [('1 1 1', -0.5), ('3 3 1', 0.0)])
 def test_ground_is_below_bodies_but_a_floor(drawing_of, server, size, ground_m):
     drawing_of(f'<link name="a"><visual name="v"><geometry><box><size>{size}</size></box>'
-               '</geometry></visual></link><frame name="b"><pose>0 0 2 0 0 0</pose></frame>')
+               '</geometry></visual></link><frame name="b"><pose>0 0 2 0 0 0</pose></frame>',
+               text_of_file=lambda content: world_file(f'<model name="m">{content}</model>'))
     grid = server.scene.get_handle_by_name('/drawing/grid')
     assert grid.position[2] == pytest.approx(ground_m, abs=0.01)
 
