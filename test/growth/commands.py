@@ -75,7 +75,15 @@ ROWS: dict[str, dict[str, tuple[int, Callable[[int], Run]]]] = {
         'steps of a topic': (10_000, of(plugin('<odom_topic>|a/../|b</odom_topic>'))),
         'models': (400, of(world_file(MODELS))),
     },
-    'convert': {'lines': (5000, lambda n: Run(CONVERT, {}, '1 2 3 0.1 0.2 0.3\n' * n))},
+    'convert': {
+        'lines': (5000, lambda n: Run(CONVERT, {}, '1 2 3 0.1 0.2 0.3\n' * n)),
+        'numbers of a list': (10_000, lambda n: Run(CONVERT, {}, 'x:\n' + '- 0.1\n' * n)),
+        'an open bracket': (20_000, lambda n: Run(CONVERT, {}, 'x: [\n' + '0.1,\n' * n)),
+        'attributes': (5000, lambda n: Run(
+            CONVERT, {}, '<pose ' + 'a="1" ' * n + '>1 2 3 0 0 0</pose>')),
+        'poses': (1000, lambda n: Run(
+            CONVERT, {}, 'a:\n' + '- {x: 1, y: 2, z: 3, rpy: [0, 0, 0]}\n' * n)),
+    },
     'diff': {
         'moved links': (600, of(LINKS, 'new.sdf', new=MOVED)),
         'other links': (600, of(LINKS, 'new.sdf', new=LINKS.replace('p#', 'q#'))),
