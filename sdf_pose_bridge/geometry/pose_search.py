@@ -173,6 +173,9 @@ class _Search:
         part = position or rotation
         if part is None:
             return
+        if twice := [name for name in part[1].names if (path, name) in self._twice]:
+            msg = f'"{_text(twice[:1])}" is given twice'
+            raise PoseFormatError(msg)
         around = next((_plain(each).lower() for each in reversed(path) if each[0] != '#'), '')
         if position and not rotation and 'w' in group and around in ('', 'quaternion'):
             quaternion = self._part(group, (names_of('x y z w'),))
