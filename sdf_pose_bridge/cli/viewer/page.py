@@ -46,6 +46,13 @@ _PANEL_WIDTH, _PANEL_PART, _LEAST_WIDTH = 360, 0.35, 720
 window in which it is open at first."""
 
 
+def _set_range(
+    camera: viser.CameraHandle | viser.InitialCameraConfig, visible: VisiblePart,
+) -> None:
+    """Set the distances between which a camera sees."""
+    camera.near, camera.far = 0.001 * visible.size_m, 100.0 * visible.size_m
+
+
 class SelectedFrame:
     """A given folder with the tree of frames, and one of the selected frame."""
 
@@ -162,6 +169,7 @@ class Page:
                 self._switches = self._add_switches(self._switches.order)
             self._refresh()
             if not before.tree.frame_ids:
+                _set_range(self._client.camera, self._drawing.visible)
                 self._look('home')
 
     def show_errors(self, errors: str) -> None:
@@ -315,10 +323,8 @@ class Pages:
         self._server, self.address = server_for_its_owner(
             port, self._title, html_of_data('path', str(path.resolve())))
         self._errors = ''
-        camera = self._server.initial_camera
-        camera.position, camera.look_at = visible.home
-        camera.fov = FIELD_OF_VIEW_RAD
-        camera.near, camera.far = 0.001 * visible.size_m, 100.0 * visible.size_m
+        self._server.initial_camera.fov = FIELD_OF_VIEW_RAD
+        self._place_camera(visible)
         self._wake, self._pages = threading.Event(), dict[int, Page]()
         self._new_page = partial(
             Page, wake=self._wake, meshes=meshes, find_change=find_change)
@@ -333,14 +339,22 @@ class Pages:
             self._server.get_scene_serializer().as_html(), self._title,
             html_of_data('names', self._visible.names) + html_of_data('labels', labels))
 
+    def _place_camera(self, visible: VisiblePart) -> None:
+        """Place the camera of the tabs that are opened from now on."""
+        camera = self._server.initial_camera
+        camera.position, camera.look_at = visible.home
+        _set_range(camera, visible)
+
     def close(self) -> None:
         """End the server."""
         self._server.stop()
 
     def show(self, scene: Scene) -> None:
         """Show another scene; raise an SdfError as the constructor does."""
-        self._shown = ShownScene(scene, self._options)
+        before, self._shown = self._shown, ShownScene(scene, self._options)
         self._meshes.left_s = ALLOWANCE.processor_s
+        if not before.tree.frame_ids:
+            self._place_camera(VisiblePart(self._shown, self._meshes))
         self.show_errors(())
         for page in self._pages.values():
             page.show(self._shown)

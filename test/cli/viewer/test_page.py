@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the page shows, without a browser; page/ uses it in one."""
 
+from contextlib import closing
 import html
 import json
 import re
@@ -181,3 +182,15 @@ def test_selected_frame_stays_where_others_are_listed(selected):
     assert selected.frame == 0
     selected.list_frames(shown_scene('a'))
     assert selected.frame == -1
+
+
+def test_camera_of_a_file_that_was_empty_sees_all_of_the_mended_one(mesh_reader):
+    empty, large = (
+        load_text(f'<sdf version="1.11"><world name="w">{content}</world></sdf>', 'w.sdf')
+        for content in (
+            '', '<frame name="a"/><frame name="b"><pose>1000 0 0 0 0 0</pose></frame>'))
+    with closing(Pages(empty, TfOptions(), 0, Units(), mesh_reader)) as pages:
+        pages.show(large)
+        camera = pages._server.initial_camera
+        assert camera.far > 10_000.0
+        assert camera.look_at[0] > 100.0
