@@ -3,8 +3,8 @@
 """Texts of names with numbers: their limits, and the growth of their time."""
 
 import contextlib
-import time
 
+from growth.turns import fault_of_growth
 import pytest
 
 from sdf_pose_bridge.geometry.formats import PoseFormatError
@@ -27,15 +27,14 @@ def test_a_text_has_limits(text, message):
     'a [[1,2,3],', '--x 1 ', POSE, 'pose {\n}\n', 'm: [1,0,0,0,1,0,0,0,1]\n', '    ', '\n', 'a.',
     '(a', '1,', '$', '0 0 0\n', '\nx: 1\n'])
 def test_time_is_in_proportion_to_the_length(text):
-    def seconds(count):
-        lines, times = ('a: 1\n' + count * text).splitlines(True), []
-        for _ in range(4):
-            begin = time.process_time()
+    def reader(text, length):
+        lines = ('a: 1\n' + length // len(text) * text).splitlines(True)
+
+        def read():
             for _, each in TextDivider(None).divided(lines, is_end=True):
                 with contextlib.suppress(PoseFormatError):
                     typed_poses_from_text(each)
-            times.append(time.process_time() - begin)
-        return min(times)
-    count = 12_000 // len(text)
-    # Smaller times are those of the clock.
-    assert seconds(2 * count) <= 2.6 * seconds(count) + 0.002
+        return read
+
+    assert fault_of_growth(
+        reader(text, 40_000), reader(text, 20_000), reader(POSE, 40_000)) == ''
