@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+import re
 from typing import TypeAlias
 
 import viser
@@ -29,6 +30,9 @@ from sdf_pose_bridge.scene.pose_setting import Measure, PoseChange
 
 FindChange: TypeAlias = Callable[[Scene, int, Pose, Measure], PoseChange]
 """Finds a change as :func:`~sdf_pose_bridge.scene.pose_setting.pose_change` does."""
+
+_SEVERAL = re.compile(r'\s|[\[({<:=]|[,;].*[,;]', re.DOTALL)
+"""What a text of one number does not have; a comma may be that of thousands."""
 
 
 class PoseEdit:
@@ -174,7 +178,7 @@ class PoseEdit:
         reference, pose, units = self._shown_for
         at = relative_pose(reference, pose)
         source = POSE_FORMATS['sdf_rpy']._replace(length=units.length, angle=units.angle)
-        pasted = [text for text in {*typed} - {*self._texts} if not _is_number(text)]
+        pasted = [text for text in {*typed} - {*self._texts} if _SEVERAL.search(text.strip())]
         try:
             # Numbers that were not typed keep all their digits.
             given = only_pose(typed_poses_from_text(pasted[0], default=source) if pasted else [
@@ -244,11 +248,3 @@ class PoseEdit:
         self._target = self._target[0], shown.pose_of(self._frame)
         self._set_pose(None)
         self._show_file(shown)
-
-
-def _is_number(text: str) -> bool:
-    try:
-        number_from_text(text)
-    except PoseFormatError:
-        return False
-    return True
