@@ -15,8 +15,8 @@ import re
 
 from sdf_pose_bridge.geometry.formats import PoseFormatError
 
-LONGEST_TEXT, _DEEPEST = 1_000_000, 50
-"""The most characters of a text, and names in one another."""
+_DEEPEST = 50
+"""The most names in one another."""
 
 _NUMBER = r'[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?'
 _TOKEN = re.compile(rf"""
@@ -79,11 +79,8 @@ def named_from_text(text: str) -> Sequence[Named]:
     Read a text.
 
     :return: the names in the order of the text; the first one is the text itself.
-    :raises PoseFormatError: if it is too long or too deep.
+    :raises PoseFormatError: if it is too deep.
     """
-    if len(text) > LONGEST_TEXT:
-        msg = f'the text has more than {LONGEST_TEXT} characters'
-        raise PoseFormatError(msg)
     reader = _Reader()
     reader.read(text, is_first=True)
     return reader.found

@@ -110,9 +110,9 @@ def name_in_tables(name: str, *, is_attribute: bool = False) -> str:
     return _SYNONYMS.get(parts[-1], parts[-1])
 
 
-def numbers_of(named: Named | None) -> tuple[Sequence[str], str]:
+def numbers_of(named: Named) -> tuple[Sequence[str], str]:
     """Return the numbers of a name, none if there are other words, and the unit behind them."""
-    words, unit = named.words if named else [], ''
+    words, unit = named.words, ''
     while words and (words[0] == ':' or (
             words[0].startswith('(') and UNITS.keys().isdisjoint(words[0][1:-1].split()))):
         words = words[1:]

@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from itertools import islice, takewhile
+from collections.abc import Sequence
+from itertools import takewhile
 import re
 from typing import NamedTuple
 
@@ -67,9 +67,9 @@ def poses_from_text(text: str, source: Format | None) -> Sequence[FoundPose]:
         return [FoundPose(words, POSE_FORMATS['abb'], 'a target of ABB', ())]
     search = _Search(named_from_text(text), source)
     if frames[1:] and not search.poses:
-        search.faults.append((99, f'the text has {len(frames)} frames; give one with --from abb'))
-    if search.faults and not search.poses:
-        raise PoseFormatError(max(search.faults)[1])
+        search.add_fault(99, f'the text has {len(frames)} frames; give one with --from abb')
+    if search.fault[1] and not search.poses:
+        raise PoseFormatError(search.fault[1])
     return search.list_of_poses()
 
 
@@ -82,18 +82,31 @@ def _text(names: Sequence[str]) -> str:
     return ' '.join(name.lstrip('@') for name in names)
 
 
+class _Part(NamedTuple):
+    """A position or a rotation in a text."""
+
+    words: Sequence[str]
+    names: tuple[str, ...] = ()
+    rotation: str = 'rpy'
+    """The format of a rotation."""
+
+
+_ZEROS = _Part([*'000'])
+
+
 class _Search:
     """Finds poses by the names in a text."""
 
     def __init__(self, found: Sequence[Named], source: Format | None) -> None:
         self.poses: list[FoundPose] = []
-        self.faults: list[tuple[int, str]] = []
-        """Why names are no pose, each with the number of those that are right."""
+        self.fault = 0, ''
+        """Why names are no pose, behind the number of those that are right."""
         self._source = source
         self._groups: dict[tuple[str, ...], dict[str, Named]] = {}
         """By a path the names in it, and ``a.b`` for those in these."""
         self._twice: set[tuple[tuple[str, ...], str]] = set()
-        self._others: dict[tuple[str, ...], Sequence[tuple[str, Named, bool]]] = {}
+        self._changes: dict[tuple[str, ...], str] = {}
+        """By a path the first name in it that may say what numbers are."""
         self._used: set[tuple[str, ...]] = set()
         """The paths of what is in a pose or beside it."""
         for each in found[1:]:
@@ -116,7 +129,7 @@ class _Search:
             if each.around is not None and each.around.name == 'compiler'}
         for path, group in self._groups.items():
             if not tables.KNOWN.isdisjoint(group):
-                self._read_group(path, group)
+                self._read_group(path)
         for each in found[1:]:
             if each.path not in self._used and (each.words or each.kind == 'element'):
                 self._read_words(each)
@@ -131,9 +144,12 @@ class _Search:
         if name in group:
             self._twice.add((path, name))
         group[name] = named
+        if named.words and tables.CHANGES.fullmatch(name):
+            self._changes.setdefault(path, name)
 
-    def _fault(self, nearness: int, message: str) -> None:
-        self.faults.append((nearness, message))
+    def add_fault(self, nearness: int, message: str) -> None:
+        """Keep the fault of the names that are nearest to a pose."""
+        self.fault = max(self.fault, (nearness, message))
 
     def list_of_poses(self) -> Sequence[FoundPose]:
         """Return the poses; several ones have names, and are at the same depth in one list."""
@@ -159,84 +175,74 @@ class _Search:
 
     # Names of a group
 
-    def _read_group(self, path: tuple[str, ...], group: Mapping[str, Named]) -> None:
-        for form, text in tables.MAKERS:
-            if (part := self._part(group, (form,))) is not None:
-                self._add_pose(
-                    path, group, form.names, part[0], POSE_FORMATS[form.rotation], text)
+    def _read_group(self, path: tuple[str, ...]) -> None:
+        group = self._groups[path]
+        for names, text in tables.MAKERS:
+            if (part := self._part(path, (names,))) is not None:
+                self._add_pose(path, part, POSE_FORMATS[part.rotation], text)
                 return
         arguments = group.get('args') or group.get('arguments')
         if arguments and any(each.words == [tables.PUBLISHER] for each in group.values()):
             self._read_publisher(' '.join(arguments.words).split(), path)
-        position = self._part(group, tables.POSITIONS)
-        rotation = self._part(group, tables.ROTATIONS)
+        position = self._part(path, tables.POSITIONS)
+        rotation = self._part(path, tables.ROTATIONS)
         part = position or rotation
         if part is None:
             return
-        if twice := [name for name in part[1].names if (path, name) in self._twice]:
-            msg = f'"{_text(twice[:1])}" is given twice'
-            raise PoseFormatError(msg)
         around = next((_plain(each).lower() for each in reversed(path) if each[0] != '#'), '')
         if position and not rotation and 'w' in group and around in ('', 'quaternion'):
-            quaternion = self._part(group, (names_of('x y z w'),))
-            if quaternion is not None:
-                self._add_pose(path, group, quaternion[1].names, quaternion[0],
-                               ROTATION_FORMATS['quaternion'], 'x y z w')
+            if quaternion := self._part(path, (names_of('x y z w'),)):
+                self._add_pose(path, quaternion, ROTATION_FORMATS['quaternion'], 'x y z w')
             return
-        first, _, is_dotted = part[1].names[0].partition('.')
+        first, _, is_dotted = part.names[0].partition('.')
         may_be_missing = around == 'origin' or first[:2] == '--' or bool(
             is_dotted and around in ('pose', 'poses') and first in group
             and group[first].name.lower() in tables.OF_ROS)
-        others = {name for each in (tables.ROTATIONS if position else tables.POSITIONS)
-                  for name in (*each.names, each.names[0].partition('.')[0]) if name in group}
-        may_be_missing = may_be_missing and not others
-        if not rotation and (may_be_missing or part[1].names[0] == '@pos'):
-            rotation = [*'000'], names_of('', 'rpy')
-        if not position and may_be_missing:
-            position = [*'000'], names_of('')
+        others = dict.fromkeys(
+            name for each in (tables.ROTATIONS if position else tables.POSITIONS)
+            for name in (*each.names, each.names[0].partition('.')[0]) if name in group)
+        if not others:
+            rotation = rotation or (
+                _ZEROS if may_be_missing or part.names[0] == '@pos' else None)
+            position = position or (_ZEROS if may_be_missing else None)
         if position and rotation:
-            self._read_parts(path, group, position, rotation)
+            self._read_parts(path, position, rotation)
             return
         what = 'rotation' if position else 'position, such as x y z'
-        if others - {*part[1].names} - {'t', 'T'}:
+        if wrong := [name.lstrip('@') for name in others if name not in ('t', 'T')]:
             hint = '' if all(len(group[each].words) != 4 for each in others) else (
                 '; the order of four numbers is not said: x y z w is sdf_quat_xyzw, and w x y z is'
                 ' mujoco')
-            raise PoseFormatError(max(self.faults, default=(0, ''))[1] or (
-                f'"{listed([*others])}" beside {_text(part[1].names)} is no {what}{hint}'))
-        if position or part[1].rotation != 'matrix':
-            self._fault(len(part[0]), f'the text has {_text(part[1].names)} without a {what}')
+            raise PoseFormatError(self.fault[1] or (
+                f'"{listed(wrong)}" beside {_text(part.names)} is no {what}{hint}'))
+        if position or part.rotation != 'matrix':
+            self.add_fault(len(part.words), f'the text has {_text(part.names)} without a {what}')
 
-    def _read_parts(
-        self, path: tuple[str, ...], group: Mapping[str, Named],
-        position: tuple[Sequence[str], Names], rotation: tuple[Sequence[str], Names],
-    ) -> None:
-        (x, y, z), words = position[0], [*position[0], *rotation[0]]
-        kind, names = rotation[1].rotation, position[1].names + rotation[1].names
+    def _read_parts(self, path: tuple[str, ...], position: _Part, rotation: _Part) -> None:
+        (x, y, z), words, group = position.words, rotation.words, self._groups[path]
+        names = position.names + rotation.names
         text = '<origin>' if path and _plain(path[-1]) == 'origin' else (
             tables.PUBLISHER if names[0][:2] == '--' else ', '.join(dict.fromkeys(
                 _plain(group[name].path[len(path)]) for name in names if name in group)))
-        if kind == 'matrix':
-            rows = rotation[0]
-            words = [*rows[:3], x, *rows[3:6], y, *rows[6:], z, *tables.LAST_ROW]
-        if kind == 'euler':
+        if rotation.rotation == 'euler':
             axes = self._compiler.get('eulerseq', 'xyz')
             pose_format = format_from_name(
                 f'{"r" if axes.islower() else "s"}{axes.lower()}', POSE_FORMATS)._replace(
                 angle=RADIANS if self._compiler.get('angle') == 'radian' else DEGREES)
         else:
-            pose_format = POSE_FORMATS[tables.POSE_OF_ROTATION[kind]]
-        self._add_pose(path, group, names, words, pose_format, text)
+            pose_format = POSE_FORMATS[tables.POSE_OF_ROTATION[rotation.rotation]]
+        words = [x, y, z, *words] if rotation.rotation != 'matrix' else [
+            *words[:3], x, *words[3:6], y, *words[6:], z, *tables.LAST_ROW]
+        self._add_pose(path, _Part(words, names), pose_format, text)
 
-    def _part(
-        self, group: Mapping[str, Named], parts: Sequence[Names],
-    ) -> tuple[Sequence[str], Names] | None:
-        """Return the numbers of a position or a rotation, and its names."""
+    def _part(self, path: tuple[str, ...], parts: Sequence[Names]) -> _Part | None:
+        """Return the first position or rotation that is complete; raise an error for one twice."""
+        group = self._groups[path]
         for part in parts:
             hits = [name for name in part.names if name in group]
             around = group.get(part.names[0].rpartition('.')[0])
-            if not hits and not (part.missing and around and not around.words and not any(
-                    name.startswith(f'{part.names[0].partition(".")[0]}.') for name in group)):
+            if not hits and not (part.missing and around and not around.words and (
+                    around.path not in self._groups)):
                 continue
             numbers = {name: numbers_of(group[name])[0] for name in hits}
             wrong = [name for name in hits if len(numbers[name]) != part.width]
@@ -254,44 +260,42 @@ class _Search:
                 if is_one or not all(map(is_number, words)):
                     text = ' '.join(words)
                     hint = '; replace it first, as xacro does' if '$' in text else ''
-                    self._fault(len(hits), f'"{_text(wrong[:1])}" is {shortened(text)!r}, not'
-                                f' {"a number" if is_one else f"{part.width} numbers"}{hint}')
+                    self.add_fault(len(hits), f'"{_text(wrong[:1])}" is {shortened(text)!r}, not'
+                                   f' {"a number" if is_one else f"{part.width} numbers"}{hint}')
             elif missing and not filled:
-                self._fault(len(hits), f'{_text(missing)} is missing beside {_text(hits)}')
+                self.add_fault(len(hits), f'{_text(missing)} is missing beside {_text(hits)}')
+            elif twice := [name for name in hits if (path, name) in self._twice]:
+                msg = f'"{_text(twice[:1])}" is given twice'
+                raise PoseFormatError(msg)
             else:
                 words = [word for index, name in enumerate(part.names)
                          for word in numbers.get(name, filled[index:index + 1])]
-                return words, part._replace(names=(*hits,) or part.names)
+                return _Part(words, (*hits,) or part.names, part.rotation)
         return None
 
     def _add_pose(
-        self, path: tuple[str, ...], group: Mapping[str, Named], names: Sequence[str],
-        words: Sequence[str], pose_format: Format, text: str,
+        self, path: tuple[str, ...], part: _Part, pose_format: Format, text: str,
     ) -> None:
-        """Add a pose; raise an error for names twice, and for those that are left over."""
-        around = {name.rpartition('.')[0] for name in names}
+        """Add a pose; raise an error for names that are left over."""
+        names, around = part.names, {name.rpartition('.')[0] for name in part.names}
         is_mjcf = any(name[:1] == '@' for name in names)
-        for name, named in group.items():
-            numbers, unit = numbers_of(named)
+        for name, named in self._groups[path].items():
+            (numbers, unit), what = numbers_of(named), ''
             if name in names or name in around or name == 'matrix':
                 self._used.add(named.path)
             if name in names:
-                has_unit = unit in ('', pose_format.length.name, pose_format.angle and (
-                    pose_format.angle.name))
-                what = '' if has_unit else f'is in {unit}, and {pose_format.name} is not'
-                if (path, name) in self._twice:
-                    what = 'is given twice'
-            elif name in around or named.path[len(path)][0] == '<' or (
+                if unit not in ('', pose_format.length.name, pose_format.angle and (
+                        pose_format.angle.name)):
+                    what = f'is in {unit}, and {pose_format.name} is not'
+            elif not (name in around or named.path[len(path)][0] == '<' or (
                     tables.BESIDE.fullmatch(name)) or (
-                    is_mjcf and tables.BESIDE_MJCF.fullmatch(name)):
-                what = ''
-            else:
-                is_about = numbers or (named.words and tables.CHANGES.fullmatch(name))
-                what = 'is left over beside the pose' if is_about else ''
+                    is_mjcf and tables.BESIDE_MJCF.fullmatch(name))) and (
+                    numbers or (named.words and tables.CHANGES.fullmatch(name))):
+                what = 'is left over beside the pose'
             if what:
                 msg = f'"{shortened(name.lstrip("@"))}" {what}'
                 raise PoseFormatError(msg)
-        self.poses.append(FoundPose(words, pose_format, text, path))
+        self.poses.append(FoundPose(part.words, pose_format, text, path))
 
     # Words of one name
 
@@ -319,34 +323,28 @@ class _Search:
         name, is_pose = named.name, len(numbers) in (12, 16)
         if len(numbers) not in (9, 12, 16):
             if len(numbers) < 16:
-                self._fault(1, f'"{shortened(name)}" has {len(numbers)} numbers; a matrix'
+                self.add_fault(1, f'"{shortened(name)}" has {len(numbers)} numbers; a matrix'
                                ' has 9, 12 or 16')
             return
-        for other, each, is_about in self._beside(named.path[:-1]):
-            if is_about or not (is_pose or each is named):
-                msg = f'"{shortened(other)}" is left over beside {shortened(name)}'
-                raise PoseFormatError(msg)
+        path = named.path[:-1]
+        if left_over := self._changes.get(path) or (not is_pose and next((
+                other for other, each in self._groups[path].items()
+                if each is not named and numbers_of(each)[0] and not tables.BESIDE.fullmatch(other)
+                and not tables.NO_POSE.fullmatch(other)), '')):
+            msg = f'"{shortened(left_over)}" is left over beside {shortened(name)}'
+            raise PoseFormatError(msg)
         wanted = self._source
         columns = len(wanted.columns) if wanted else 0
         order = 'franka_matrix' if tables.COLUMN_MAJOR.fullmatch(name) else 'matrix_row_major'
         pose_format = wanted if wanted and columns == 9 and bool(wanted.position) is is_pose else (
             POSE_FORMATS[order] if is_pose else ROTATION_FORMATS['matrix'])
         if len(numbers) == 12 and pose_format.last_row[0] != 12:
-            self._fault(12, f'"{shortened(name)}" has 12 numbers, and {pose_format.name} has 16')
+            self.add_fault(
+                12, f'"{shortened(name)}" has 12 numbers, and {pose_format.name} has 16')
         else:
             self.poses.append(FoundPose(
                 [*numbers, *(tables.LAST_ROW if len(numbers) == 12 else ())], pose_format,
                 f'the matrix {shortened(name)}', named.path))
-
-    def _beside(self, path: tuple[str, ...]) -> Sequence[tuple[str, Named, bool]]:
-        """Return the first names in a group with numbers, or words about them."""
-        if path not in self._others:
-            self._others[path] = [*islice((
-                (name, each, is_about) for name, each in self._groups[path].items()
-                if (is_about := bool(each.words and tables.CHANGES.fullmatch(name))) or (
-                    numbers_of(each)[0] and not tables.BESIDE.fullmatch(name)
-                    and not tables.NO_POSE.fullmatch(name))), 2)]
-        return self._others[path]
 
     def _read_publisher(self, words: Sequence[str], path: tuple[str, ...]) -> None:
         numbers = [*takewhile(is_number, words)]
@@ -356,7 +354,7 @@ class _Search:
             name = 'sdf_rpy' if len(numbers) == 6 else 'sdf_quat_xyzw'
             self.poses.append(FoundPose(numbers, POSE_FORMATS[name], tables.PUBLISHER, path))
         elif words and words[0][:2] != '--':
-            self._fault(9, f'{tables.PUBLISHER} has {len(numbers)} numbers; it takes x y z'
+            self.add_fault(9, f'{tables.PUBLISHER} has {len(numbers)} numbers; it takes x y z'
                            ' yaw pitch roll, or x y z qx qy qz qw')
 
     def _read_element(self, named: Named) -> None:

@@ -23,12 +23,14 @@ from sdf_pose_bridge.geometry.formats import (
     PoseFormatError,
     ROTATION_FORMATS,
 )
-from sdf_pose_bridge.geometry.named_numbers import LONGEST_TEXT
 from sdf_pose_bridge.geometry.pose_search import FoundPose, poses_from_text
 from sdf_pose_bridge.names import shortened
 
 FORMATS: Mapping[str, Format] = {**ROTATION_FORMATS, **POSE_FORMATS}
 """All formats of numbers."""
+
+_LONGEST_TEXT = 1_000_000
+"""The most characters of a text."""
 
 _SEPARATOR = re.compile(r'[\s,;()\[\]{}]+')
 _ARRAY = re.compile(r'\b(?:\w+\.)?(?:array|matrix|tensor)\(|,\s*dtype=[\w.]+')
@@ -93,8 +95,8 @@ def typed_poses_from_text(
     :raises PoseFormatError: if the text is no pose in the format, or has decimal commas.
     """
     text = text.replace(_MINUS, '-')
-    if len(text) > LONGEST_TEXT:
-        msg = f'the text has more than {LONGEST_TEXT} characters'
+    if len(text) > _LONGEST_TEXT:
+        msg = f'the text has more than {_LONGEST_TEXT} characters'
         raise PoseFormatError(msg)
     without_names = _ARRAY.sub(' ', text)
     is_numbers = _FIRST_NUMBER.match(without_names) is not None
@@ -255,7 +257,7 @@ class TextDivider:
             self._takes_rows and is_row and not line[0].isspace())
         is_partial = len(self._lines) < self._row_count and (
             len(self._lines) * self._row_count != self._length)
-        if self._size > LONGEST_TEXT or not (
+        if self._size > _LONGEST_TEXT or not (
                 self._depth or self._is_named or is_partial or text.rstrip()[-1:] == '\\'):
             self._end()
 

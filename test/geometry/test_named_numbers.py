@@ -8,7 +8,6 @@ from growth.turns import fault_of_growth
 import pytest
 
 from sdf_pose_bridge.geometry.formats import PoseFormatError
-from sdf_pose_bridge.geometry.named_numbers import named_from_text
 from sdf_pose_bridge.geometry.pose_texts import TextDivider, typed_poses_from_text
 
 POSE = '{position: {x: 1, y: 2, z: 3}, orientation: {w: 1}}\n'
@@ -19,7 +18,7 @@ POSE = '{position: {x: 1, y: 2, z: 3}, orientation: {w: 1}}\n'
     ('x: ' + ' ' * 1_000_000, 'more than 1000000 characters')])
 def test_a_text_has_limits(text, message):
     with pytest.raises(PoseFormatError, match=message):
-        named_from_text(text)
+        typed_poses_from_text(text)
 
 
 @pytest.mark.parametrize('text', [
