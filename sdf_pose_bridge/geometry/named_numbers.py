@@ -199,7 +199,7 @@ class _Reader:
         if name:
             self.found.append(new)
         top.is_used = True
-        top.has_names |= not end and bool(name)
+        top.has_names |= not end
         top.has_scalars |= name in SCALARS
         self._open.append(new)
 

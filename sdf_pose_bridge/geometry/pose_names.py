@@ -19,39 +19,40 @@ class Names(NamedTuple):
     """In the order of the numbers; ``a.b`` is b in a."""
     width: int
     """How many numbers each has."""
-    rotation: str
-    """The format of a rotation."""
+    format: str
+    """That of a pose with this rotation; ``euler`` if a ``<compiler>`` says it."""
     missing: tuple[str, ...]
     """Numbers for missing names; empty if none may be missing."""
 
 
-def names_of(text: str, rotation: str = '', missing: str = '') -> Names:
+def names_of(text: str, pose_format: str = '', missing: str = '') -> Names:
     """Return names; one with ``*3`` has three numbers."""
     names, _, count = text.partition('*')
-    return Names((names,) if count else (*text.split(),), int(count or 1), rotation,
+    return Names((names,) if count else (*text.split(),), int(count or 1), pose_format,
                   (*missing.split(),))
 
 
 # The tables
 
+MATRIX, _RPY, _XYZW = 'matrix_row_major', 'sdf_rpy', 'sdf_quat_xyzw'
 POSITIONS = (
     names_of('x y z'), names_of('position.x position.y position.z', missing='0 0 0'),
     names_of('position*3'), names_of('@pos*3'), names_of('t*3'), names_of('T*3'),
     names_of('--x --y --z', missing='0 0 0'))
 ROTATIONS = (
-    names_of('roll pitch yaw', 'rpy'), names_of('rpy*3', 'rpy'),
-    names_of('rpy.roll rpy.pitch rpy.yaw', 'rpy'),
-    names_of('orientation.roll orientation.pitch orientation.yaw', 'rpy'),
-    names_of('qx qy qz qw', 'quaternion'),
-    names_of('orientation.qx orientation.qy orientation.qz orientation.qw', 'quaternion'),
-    names_of('orientation.x orientation.y orientation.z orientation.w', 'quaternion', '0 0 0 1'),
-    names_of('orientation.in quaternion*4', 'quaternion'),
-    names_of('orientation.in quaternion (xyzw)*4', 'quaternion'),
-    names_of('quat_xyzw*4', 'quaternion'), names_of('quat_wxyz*4', 'quaternion_wxyz'),
-    names_of('@quat*4', 'quaternion_wxyz'), names_of('@euler*3', 'euler'),
-    names_of('orientation*9', 'matrix'), names_of('R*9', 'matrix'),
-    names_of('--roll --pitch --yaw', 'rpy', '0 0 0'),
-    names_of('--qx --qy --qz --qw', 'quaternion', '0 0 0 1'))
+    names_of('roll pitch yaw', _RPY), names_of('rpy*3', _RPY),
+    names_of('rpy.roll rpy.pitch rpy.yaw', _RPY),
+    names_of('orientation.roll orientation.pitch orientation.yaw', _RPY),
+    names_of('qx qy qz qw', _XYZW),
+    names_of('orientation.qx orientation.qy orientation.qz orientation.qw', _XYZW),
+    names_of('orientation.x orientation.y orientation.z orientation.w', _XYZW, '0 0 0 1'),
+    names_of('orientation.in quaternion*4', _XYZW),
+    names_of('orientation.in quaternion (xyzw)*4', _XYZW),
+    names_of('quat_xyzw*4', _XYZW), names_of('quat_wxyz*4', 'mujoco'),
+    names_of('@quat*4', 'mujoco'), names_of('@euler*3', 'euler'),
+    names_of('orientation*9', MATRIX), names_of('R*9', MATRIX),
+    names_of('--roll --pitch --yaw', _RPY, '0 0 0'),
+    names_of('--qx --qy --qz --qw', _XYZW, '0 0 0 1'))
 """Positions and rotations, each with each other. Names with @ are attributes of MJCF."""
 
 _SYNONYMS = {
@@ -66,9 +67,6 @@ CALLS = {
 COLUMN_MAJOR = re.compile('(O|F|EE|NE)_T_(EE|NE|K)(_[cd])?')
 """Names of matrices in messages of libfranka."""
 PUBLISHER = 'static_transform_publisher'
-POSE_OF_ROTATION = {
-    'rpy': 'sdf_rpy', 'quaternion': 'sdf_quat_xyzw', 'quaternion_wxyz': 'mujoco',
-    'matrix': 'matrix_row_major'}
 LAST_ROW = '0', '0', '0', '1'
 _IN_LIST = r'\[\s*[^\[\],]+' + r'(?:,[^\[\],]+)'
 FRAME_OF_ABB = re.compile(

@@ -66,7 +66,7 @@ def poses_from_text(text: str, source: Format | None) -> Sequence[FoundPose]:
         words = re.findall(r'[^\s,\[\]]+', targets[0][1])
         return [FoundPose(words, POSE_FORMATS['abb'], 'a target of ABB', ())]
     search = _Search(named_from_text(text), source)
-    if frames[1:] and not search.poses:
+    if frames[1:]:
         search.add_fault(99, f'the text has {len(frames)} frames; give one with --from abb')
     if search.fault[1] and not search.poses:
         raise PoseFormatError(search.fault[1])
@@ -87,8 +87,8 @@ class _Part(NamedTuple):
 
     words: Sequence[str]
     names: tuple[str, ...] = ()
-    rotation: str = 'rpy'
-    """The format of a rotation."""
+    format: str = 'sdf_rpy'
+    """That of a pose with this rotation."""
 
 
 _ZEROS = _Part([*'000'])
@@ -179,7 +179,7 @@ class _Search:
         group = self._groups[path]
         for names, text in tables.MAKERS:
             if (part := self._part(path, (names,))) is not None:
-                self._add_pose(path, part, POSE_FORMATS[part.rotation], text)
+                self._add_pose(path, part, POSE_FORMATS[part.format], text)
                 return
         arguments = group.get('args') or group.get('arguments')
         if arguments and any(each.words == [tables.PUBLISHER] for each in group.values()):
@@ -215,7 +215,7 @@ class _Search:
                 ' mujoco')
             raise PoseFormatError(self.fault[1] or (
                 f'"{listed(wrong)}" beside {_text(part.names)} is no {what}{hint}'))
-        if position or part.rotation != 'matrix':
+        if position or part.format != tables.MATRIX:
             self.add_fault(len(part.words), f'the text has {_text(part.names)} without a {what}')
 
     def _read_parts(self, path: tuple[str, ...], position: _Part, rotation: _Part) -> None:
@@ -224,14 +224,14 @@ class _Search:
         text = '<origin>' if path and _plain(path[-1]) == 'origin' else (
             tables.PUBLISHER if names[0][:2] == '--' else ', '.join(dict.fromkeys(
                 _plain(group[name].path[len(path)]) for name in names if name in group)))
-        if rotation.rotation == 'euler':
+        if rotation.format == 'euler':
             axes = self._compiler.get('eulerseq', 'xyz')
             pose_format = format_from_name(
                 f'{"r" if axes.islower() else "s"}{axes.lower()}', POSE_FORMATS)._replace(
                 angle=RADIANS if self._compiler.get('angle') == 'radian' else DEGREES)
         else:
-            pose_format = POSE_FORMATS[tables.POSE_OF_ROTATION[rotation.rotation]]
-        words = [x, y, z, *words] if rotation.rotation != 'matrix' else [
+            pose_format = POSE_FORMATS[rotation.format]
+        words = [x, y, z, *words] if rotation.format != tables.MATRIX else [
             *words[:3], x, *words[3:6], y, *words[6:], z, *tables.LAST_ROW]
         self._add_pose(path, _Part(words, names), pose_format, text)
 
@@ -270,7 +270,7 @@ class _Search:
             else:
                 words = [word for index, name in enumerate(part.names)
                          for word in numbers.get(name, filled[index:index + 1])]
-                return _Part(words, (*hits,) or part.names, part.rotation)
+                return _Part(words, (*hits,) or part.names, part.format)
         return None
 
     def _add_pose(
@@ -335,7 +335,7 @@ class _Search:
             raise PoseFormatError(msg)
         wanted = self._source
         columns = len(wanted.columns) if wanted else 0
-        order = 'franka_matrix' if tables.COLUMN_MAJOR.fullmatch(name) else 'matrix_row_major'
+        order = 'franka_matrix' if tables.COLUMN_MAJOR.fullmatch(name) else tables.MATRIX
         pose_format = wanted if wanted and columns == 9 and bool(wanted.position) is is_pose else (
             POSE_FORMATS[order] if is_pose else ROTATION_FORMATS['matrix'])
         if len(numbers) == 12 and pose_format.last_row[0] != 12:
