@@ -190,7 +190,7 @@ class _Search:
         if part is None:
             return
         around = next((_plain(each).lower() for each in reversed(path) if each[0] != '#'), '')
-        if position and not rotation and 'w' in group and around in ('', 'quaternion'):
+        if not rotation and 'w' in group and around in ('', 'quaternion'):
             if quaternion := self._part(path, (names_of('x y z w'),)):
                 self._add_pose(path, quaternion, ROTATION_FORMATS['quaternion'], 'x y z w')
             return
@@ -215,7 +215,7 @@ class _Search:
                 ' mujoco')
             raise PoseFormatError(self.fault[1] or (
                 f'"{listed(wrong)}" beside {_text(part.names)} is no {what}{hint}'))
-        if position or part.format != tables.MATRIX:
+        if part.format != tables.MATRIX:
             self.add_fault(len(part.words), f'the text has {_text(part.names)} without a {what}')
 
     def _read_parts(self, path: tuple[str, ...], position: _Part, rotation: _Part) -> None:
@@ -249,10 +249,10 @@ class _Search:
             missing, filled = [name for name in part.names if name not in hits], part.missing
             if around and around.name.lower() not in tables.OF_ROS:
                 filled = ()
-            if filled == tables.LAST_ROW and around and part.names[3] in missing and any(
+            if filled and 'orientation.w' in missing and any(
                     float(number) for each in numbers.values() for number in each):
                 # Protobuf leaves out zeros. In a message of ROS, 1 would be the default.
-                is_protobuf = around.kind == 'opening'
+                is_protobuf = around is not None and around.kind == 'opening'
                 filled, missing = ((*'0000',), missing) if is_protobuf else ((), missing[-1:])
             if wrong:
                 is_one, words = part.width == 1, group[wrong[0]].words

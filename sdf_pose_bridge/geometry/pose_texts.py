@@ -171,13 +171,13 @@ class TextDivider:
         # A line of a sequence of axes has a pose or a rotation.
         self._is_sequence = source is not None and source.name not in FORMATS
         self._length = 0 if source is None or self._is_sequence else source.row_length
-        self._number, self._depth, self._size = 0, 0, 0
+        self._number, self._is_after_blank = 0, False
         self._lines: list[str] = []
         """Those of a text that is not complete."""
         self._parts: list[tuple[int, int]] = []
         """The numbers, and places among these, of lines before which there are blank ones."""
-        self._row_count, self._is_named, self._takes_rows, self._is_after_blank = (
-            0, False, False, False)
+        self._depth, self._size, self._row_count, self._is_named, self._takes_rows = (
+            0, 0, 0, False, False)
         self._texts: list[tuple[int, str | list[float]]] = []
 
     def divided(
@@ -241,6 +241,7 @@ class TextDivider:
             self._end()
         if not self._lines:
             self._parts, self._is_named = [(self._number, 0)], _NAME.match(line) is not None
+            self._depth, self._size, self._takes_rows = 0, 0, False
             self._row_count = len(words) if is_row and len(words) in (3, 4) and (
                 not self._is_sequence) else 0
         if self._is_after_blank and self._lines and not line[0].isspace():
@@ -270,8 +271,7 @@ class TextDivider:
             # A file with blank lines, unless these are between poses.
             are_texts = parts[1:] and not self._is_pose(whole) and any(map(self._is_pose, parts))
             self._texts += parts if are_texts else [whole]
-        self._lines, self._depth, self._size = [], 0, 0
-        self._row_count, self._is_named, self._takes_rows = 0, False, False
+        self._lines = []
 
 
 def _is_exact(matrix: Sequence[float]) -> bool:

@@ -30,6 +30,7 @@ MATRIX = '[1, 0, 0, 5, 0, 1, 0, 6, 0, 0, 1, 7]'
     ('w:=[FALSE,"",[[1,0,0],[1,0,0,0]],[[0,0,0],[1,0,0,0]]];', 'has 2 frames; .* --from abb'),
     ('position: [1, 2, 3]\norientation: [0, 0, 0, 1]', 'the order of four numbers is not said'),
     ('position: {x: 1}\norientation: {z: 1}', 'orientation.w is missing'),
+    ('a.position.x=1 a.orientation.z=1', 'orientation.w is missing'),
     ('{pose: {pos: {x: 1, y: 2, z: 3}}}', 'without a rotation'),
     (f'a: {POSE}\nb:\n  c: {POSE}', 'several poses'),
     (f'a: {POSE}\nb: {{xyz: [1, 2, 3], rpy: [0, 0, 0]}}', 'several poses'),
