@@ -66,7 +66,10 @@ class Named:
     """The bracket or element that ends it; empty for names, which others end."""
     column: int = 0
     line: int = 0
-    around: Named | None = None
+    around: str = ''
+    """The innermost name around it; empty if that is the text or an item of a list."""
+    is_attribute: bool = False
+    """Whether it is directly in an element."""
     is_used: bool = False
     """Whether words or names are in it."""
     has_names: bool = False
@@ -195,7 +198,8 @@ class _Reader:
             f'{name}{{{self._count}' if name and end else name or (
                 f'#{self._count}' if is_item else ''))
         new = Named(name or ('' if is_item else top.name), (*top.path, part) if part else top.path,
-                    [] if name else top.words, kind, end, self._column, self._line, top)
+                    [] if name else top.words, kind, end, self._column, self._line,
+                    top.name, is_attribute=top.kind == 'element')
         if name:
             self.found.append(new)
         top.is_used = True

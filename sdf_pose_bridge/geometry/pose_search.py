@@ -114,19 +114,16 @@ class _Search:
                 each.path = tuple(part for part in each.path if part[0] != '#')
             if each.kind == 'element' and not each.words:
                 continue
-            around = each.around
-            name = name_in_tables(
-                each.name, is_attribute=around is not None and around.kind == 'element')
+            name = name_in_tables(each.name, is_attribute=each.is_attribute)
             self._add(each.path[:-1], name, each)
-            if each.path[1:] and around is not None and around.name:
-                self._add(each.path[:-2], f'{name_in_tables(around.name)}.{name}', each)
+            if each.around:
+                self._add(each.path[:-2], f'{name_in_tables(each.around)}.{name}', each)
             if each.words and tables.UNIT.fullmatch(name) and not (
-                    around and around.kind == 'element' and around.name == 'pose'):
+                    each.is_attribute and each.around == 'pose'):
                 msg = f'"{shortened(name)}" is left over; numbers with units need names of these'
                 raise PoseFormatError(msg)
         self._compiler = {
-            each.name: ' '.join(each.words) for each in found
-            if each.around is not None and each.around.name == 'compiler'}
+            each.name: ' '.join(each.words) for each in found if each.around == 'compiler'}
         for path, group in self._groups.items():
             if not tables.KNOWN.isdisjoint(group):
                 self._read_group(path)
@@ -334,10 +331,10 @@ class _Search:
             msg = f'"{shortened(left_over)}" is left over beside {shortened(name)}'
             raise PoseFormatError(msg)
         wanted = self._source
-        columns = len(wanted.columns) if wanted else 0
         order = 'franka_matrix' if tables.COLUMN_MAJOR.fullmatch(name) else tables.MATRIX
-        pose_format = wanted if wanted and columns == 9 and bool(wanted.position) is is_pose else (
-            POSE_FORMATS[order] if is_pose else ROTATION_FORMATS['matrix'])
+        pose_format = POSE_FORMATS[order] if is_pose else ROTATION_FORMATS['matrix']
+        if wanted and len(wanted.columns) == 9 and bool(wanted.position) is is_pose:
+            pose_format = wanted
         if len(numbers) == 12 and pose_format.last_row[0] != 12:
             self.add_fault(
                 12, f'"{shortened(name)}" has 12 numbers, and {pose_format.name} has 16')

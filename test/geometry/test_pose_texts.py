@@ -55,6 +55,9 @@ ECHO = """At time 12.5
 - Rotation: in RPY (degree) [0.000, -0.000, 90.000]
 - Matrix:
   0.000 -1.000  0.000  0.100
+  1.000  0.000  0.000 -0.200
+  0.000  0.000  1.000  0.300
+  0.000  0.000  0.000  1.000
 """
 REPR = (
     'Pose(position=geometry_msgs.msg.Point(x=0.1, y=-0.2, z=0.3), '
