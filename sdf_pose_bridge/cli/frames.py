@@ -61,28 +61,25 @@ def print_table(labels: Sequence[str], rows: Sequence[TableRow], remark: str = '
     :param labels: the labels of the columns behind the kinds, such as x, y and z.
     :param remark: the label of the remarks, if there are any.
     """
-    rows, widths, kind_width, width = _laid_out(labels, rows, remark)
-    columns = _columns()
-    room = columns - kind_width - sum(widths) - len(widths) - 1
+    rows, columns = _laid_out(labels, rows, remark), _columns()
+    width = max(len(row.branches + row.name) for row in rows)
     if columns < _USUAL_COLUMNS:
         # In a narrow terminal, names and branches tell more than kinds.
-        rows = [row._replace(branches=row.branches[::2]) for row in rows]
-        room, kind_width = room + kind_width, 0
+        rows = [row._replace(kind='', branches=row.branches[::2]) for row in rows]
+    room = columns - len(rows[0].kind + rows[0].values[0]) - 2
     longest_remark = max(len(f'  {row.remark}'.rstrip()) for row in rows)
     width = min(width, _WIDEST_NAME, max(
         room - min(longest_remark, columns // 3), 2 * _NARROWEST_NAME))
     taken: dict[str, str] = {}
-    for name, kind, values, note, branches, is_bold, remark in rows:
+    for name, kind, (values,), note, branches, is_bold, remark in rows:
         branches = branches[max(len(branches) - width + min(len(name), _NARROWEST_NAME), 0):]
         longest = width - len(branches)
         name = f'{_fitted(name, longest, taken):{longest}}'
-        kind = f'{kind:{kind_width}}'[:kind_width]
         print((
             styled(branches, DIM, sys.stdout)
             + (styled(name, BOLD, sys.stdout) if is_bold else name)
             + f'  {styled(kind, _COLORS.get(kind.rstrip(), ""), sys.stdout) if kind else ""}'
-            f'{" ".join(map(str.rjust, values, widths))}  '
-            + shortened(remark, max(room - width - 2, _NARROWEST_NAME))).rstrip())
+            f'{values}  ' + shortened(remark, max(room - width - 2, _NARROWEST_NAME))).rstrip())
         if note:
             below = branches.translate(BELOW) + '  '
             note = shortened(printable(note), columns - len(below))
@@ -91,17 +88,18 @@ def print_table(labels: Sequence[str], rows: Sequence[TableRow], remark: str = '
 
 def _laid_out(
     labels: Sequence[str], rows: Sequence[TableRow], remark: str = '',
-) -> tuple[list[TableRow], list[int], int, int]:
-    """Return all rows, the widths of values, and those of the kinds and of the names."""
-    found = [
+) -> list[TableRow]:
+    """Return all rows with kinds of one width, and with one text for the values of each."""
+    rows = TableRow('frame', 'kind', labels, remark=remark), *rows
+    texts = [(_SHORT_KINDS.get(row.kind, row.kind) + '  ', *(row.values or ('',) * len(labels)))
+             for row in rows]
+    kind_width, *widths = (max(map(len, column)) for column in zip(*texts, strict=True))
+    return [
         row._replace(
-            name=printable(row.name[-2 * _WIDEST_NAME:]),
-            kind=f'{_SHORT_KINDS.get(row.kind, row.kind)}  ', branches=_branches(row.branches),
-            values=row.values or ('',) * len(labels), remark=printable(row.remark))
-        for row in (TableRow('frame', 'kind', labels, remark=remark), *rows)]
-    widths = [max(map(len, column)) for column in zip(*(row.values for row in found), strict=True)]
-    return (found, widths, max(len(row.kind) for row in found),
-            max(len(row.branches + row.name) for row in found))
+            name=printable(row.name[-2 * _WIDEST_NAME:]), kind=kind.ljust(kind_width),
+            values=[' '.join(map(str.rjust, values, widths))],
+            branches=_branches(row.branches), remark=printable(row.remark))
+        for row, (kind, *values) in zip(rows, texts, strict=True)]
 
 
 def _columns() -> int:
@@ -177,22 +175,23 @@ def _rows_with_poses(
     frames: Sequence[Frame], units: Units, given_digits: int | None,
 ) -> list[TableRow]:
     """Return rows with poses; where there is room, with the digits of the smallest length."""
-    def rows(length_digits: int, angle_digits: int) -> list[TableRow]:
-        return [row._replace(values=units.texts(record['pose'], (length_digits, angle_digits)))
-                if record['pose'] else row for record, row in frames]
+    def rows(*digits: int) -> list[TableRow]:
+        shown = Units(*(
+            unit._replace(digits=each) for unit, each in zip(units, digits, strict=True)))
+        return [row._replace(values=shown.texts(record['pose'])) if record['pose'] else row
+                for record, row in frames]
 
     if given_digits is not None:
         return rows(given_digits, given_digits)
     least, angle_digits = units.length.digits - 1, units.angle.digits - 1
-    found = rows(least, angle_digits)
     lengths = [abs(value) * units.length.factor for record, _ in frames if record['pose']
                for value in record['pose'][:3] if abs(value) >= TOLERANCE]
     shortest = min(lengths, default=0.0)
     needed = next(digits for digits in count(least)
                   if abs(round(shortest, digits) - shortest) <= _ROUNDING * shortest)
-    _, widths, kind_width, width = _laid_out(units.labels, found)
-    room = min(_columns(), _USUAL_COLUMNS) - (
-        width + kind_width + sum(widths) + len(widths) + 1)
+    room = min(_columns(), _USUAL_COLUMNS) - 2 - max(
+        len(''.join((row.branches, row.name, row.kind, *row.values)))
+        for row in _laid_out(units.labels, rows(least, angle_digits)))
     return rows(min(needed, least + max(room // 3, 0)), angle_digits)
 
 

@@ -34,13 +34,12 @@ class Unit(NamedTuple):
         """A half turn in this unit of angles."""
         return math.pi * self.factor
 
-    def rounded(self, value: float, digits: int | None = None) -> str:
+    def rounded(self, value: float) -> str:
         """Write a length in metres, or an angle in radians, in this unit; only 0 is a zero."""
-        digits = self.digits if digits is None else digits
         if abs(value) < TOLERANCE:
             value = 0.0
-        shown = round(value * self.factor, digits)
-        return f'{shown:.{digits}f}' if shown or not value else f'{value * self.factor:.2g}'
+        shown = round(value * self.factor, self.digits)
+        return f'{shown:.{self.digits}f}' if shown or not value else f'{value * self.factor:.2g}'
 
 
 METRES, MILLIMETRES = Unit('m', 'metres', 1.0, 4), Unit('mm', 'mm', 1000.0, 1)
@@ -78,18 +77,10 @@ class Units(NamedTuple):
         """The labels of the columns of a table of poses."""
         return f'x {self.length.name}', 'y', 'z', f'roll {self.angle.name}', 'pitch', 'yaw'
 
-    def texts(
-        self, pose: Pose, digits: tuple[int | None, int | None] = (None, None),
-    ) -> list[str]:
-        """
-        Write a pose in these units.
-
-        :param digits: the number of digits of lengths and of angles; None for that of the unit.
-        :return: x, y, z, roll, pitch and yaw, rounded.
-        """
+    def texts(self, pose: Pose) -> list[str]:
+        """Write a pose in these units: x, y, z, roll, pitch and yaw, rounded."""
         values = (*pose[:3], *rpy_from_quaternion(pose[3:]))
-        return [unit.rounded(value, digits[index // 3])
-                for index, (value, unit) in enumerate(zip(values, self.of_pose, strict=True))]
+        return [unit.rounded(value) for value, unit in zip(values, self.of_pose, strict=True)]
 
 
 def are_unlikely(rows: Floats, unit: Unit) -> Any:

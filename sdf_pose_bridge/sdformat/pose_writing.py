@@ -21,10 +21,7 @@ from sdf_pose_bridge.geometry.pose_attributes import PoseFormat, PoseTextError
 from sdf_pose_bridge.geometry.poses import Pose, relative_pose
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
 from sdf_pose_bridge.sdformat.file_change import FileChange
-from sdf_pose_bridge.sdformat.poses import (
-    pose_format_of,
-    pose_from_text,
-)
+from sdf_pose_bridge.sdformat.poses import pose_format_of, pose_from_text
 from sdf_pose_bridge.sdformat.urdf.values import pose_from_xyz_rpy
 from sdf_pose_bridge.sdformat.values import number_from_word
 from sdf_pose_bridge.sdformat.versions import Version, version_from_text
@@ -124,17 +121,13 @@ class PoseText:
         :param tolerance: largest difference of the written pose, in metres and radians.
         :raises PoseNotSetError: as :meth:`pose`.
         """
-        turn = relative_pose(self.pose(element), pose)
-        keeps_rotation = max(map(abs, turn[3:6])) < _SAME_ROTATION
-        words = self._words(element)
+        old, words = self.pose(element), self._words(element)
         new_words = _words_from_pose(
-            pose, self._format(element), tolerance, [word[0].decode() for word in words],
-            keeps_rotation=keeps_rotation)
+            pose, self._format(element), tolerance, [word[0].decode() for word in words], old)
         if not words:
             return self._with_content(element, ' '.join(new_words).encode())
-        begin, end, remaining = words[0].start(), words[-1].end(), iter(new_words)
-        text = _WORD.sub(lambda _: next(remaining).encode(), self._text[begin:end])
-        return self._change(begin, end, text)
+        begin, end = words[0].start(), words[-1].end()
+        return self._change(begin, end, _with_words(self._text[begin:end], new_words))
 
     def with_new_pose(self, element: int, pose: Pose, tolerance: float) -> FileChange:
         """
@@ -151,19 +144,15 @@ class PoseText:
         is_new = xml.tag != 'origin'
         old = [word for name in ('xyz', 'rpy') for word in words_of(xml.get(name, '0 0 0'))]
         numbers = [number_from_word(word)[0] for word in old]
-        turn = relative_pose(pose_from_xyz_rpy(numbers[:3], numbers[3:]), pose)
         words = _words_from_pose(
-            pose, PoseFormat(), tolerance, old,
-            keeps_rotation=max(map(abs, turn[3:6])) < _SAME_ROTATION)
+            pose, PoseFormat(), tolerance, old, pose_from_xyz_rpy(numbers[:3], numbers[3:]))
         begin, end = self._tags[element]
         tag = b'<origin/>' if is_new else self._text[begin:end + 1]
         # A missing attribute becomes the first one.
         for name, new in (b'rpy', words[3:]), (b'xyz', words[:3]):
             value = re.search(rb'\s%s\s*=\s*["\']([^"\']*)' % name, tag)
-            remaining = iter(new)
             if value is not None:
-                tag = tag[:value.start(1)] + _WORD.sub(
-                    lambda _, words=remaining: next(words).encode(), value[1]) + tag[value.end(1):]
+                tag = tag[:value.start(1)] + _with_words(value[1], new) + tag[value.end(1):]
             elif is_new or {*new} != {'0'}:
                 tag = tag.replace(
                     b'<origin', b'<origin %s="%s"' % (name, ' '.join(new).encode()), 1)
@@ -228,10 +217,16 @@ class PoseText:
 
 
 def _words_from_pose(
-    pose: Pose, pose_format: PoseFormat, tolerance: float, old_words: Sequence[str] = (), *,
-    keeps_rotation: bool = False,
+    pose: Pose, pose_format: PoseFormat, tolerance: float, old_words: Sequence[str] = (),
+    old: Pose | None = None,
 ) -> list[str]:
-    """Write a pose in the shortest numbers; numbers that are right already stay."""
+    """
+    Write a pose in the shortest numbers; numbers that are right already stay.
+
+    :param old: the pose of the old words. If its rotation is the same, their angles stay.
+    """
+    keeps_rotation = old is not None and (
+        max(map(abs, relative_pose(old, pose)[3:6])) < _SAME_ROTATION)
     # Together, the errors of all numbers stay within the tolerance.
     numbers = [(metres, tolerance / 2.0) for metres in pose[:3]]
     if pose_format.is_quaternion:
@@ -241,10 +236,16 @@ def _words_from_pose(
         numbers += [
             (angle * unit, tolerance / 4.0 * unit) for angle in rpy_from_quaternion(pose[3:])]
     words = [shortest_decimal(*each) for each in numbers]
-    for index, (old, (number, most)) in enumerate(zip(old_words, numbers, strict=False)):
-        if abs(number_from_word(old)[0] - number) <= most or (keeps_rotation and index >= 3):
-            words[index] = old
+    for index, (word, (number, most)) in enumerate(zip(old_words, numbers, strict=False)):
+        if abs(number_from_word(word)[0] - number) <= most or (keeps_rotation and index >= 3):
+            words[index] = word
     return words
+
+
+def _with_words(text: bytes, words: Sequence[str]) -> bytes:
+    """Return a text with other words, between which the white space stays."""
+    remaining = iter(words)
+    return _WORD.sub(lambda _: next(remaining).encode(), text)
 
 
 def shortest_decimal(number: float, tolerance: float) -> str:

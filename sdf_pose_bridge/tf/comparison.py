@@ -179,16 +179,14 @@ def _old_of_new(old: Scene, new: Scene) -> dict[int, int]:
     found = dict(waiting)
     while waiting:
         index, before = waiting.pop()
-        come, gone = new_children.get(index, []), old_children.get(before, [])
+        come, gone = {*new_children.get(index, ())}, {*old_children.get(before, ())}
         for key in (name, place):
             others = by_key(old, gone, key)
             pairs = {there[0]: others[each][0] for each, there in by_key(new, come, key).items()
                      if len(there) == len(others.get(each, ())) == 1}
             found.update(pairs)
             waiting += pairs.items()
-            used = {*pairs.values()}
-            come = [each for each in come if each not in pairs]
-            gone = [each for each in gone if each not in used]
+            come, gone = come.difference(pairs), gone.difference(pairs.values())
     return found
 
 

@@ -23,8 +23,9 @@ def test_pose_is_written_in_units():
 @pytest.mark.parametrize('value', [
     0.0, -0.0, 9e-10, 1e-9, -1.1e-9, 4e-8, 3.5e-5, -4.4e-4, 4.6e-4, 0.0123, 0.049, -0.51, 1e9])
 def test_no_number_but_zero_is_written_as_zero(unit, digits, value):
-    text = unit.rounded(value, digits)
+    if digits is not None:
+        unit = unit._replace(digits=digits)
+    text = unit.rounded(value)
     assert (float(text) == 0.0) == (abs(value) < 1e-9)
-    digits = unit.digits if digits is None else digits
     assert float(text) == pytest.approx(
-        value * unit.factor, abs=max(0.5 * 10.0 ** -digits, 1e-9 * unit.factor))
+        value * unit.factor, abs=max(0.5 * 10.0 ** -unit.digits, 1e-9 * unit.factor))
