@@ -18,7 +18,7 @@ from sdf_pose_bridge.cli.arguments import (
     add_unit_arguments,
     argument_type,
 )
-from sdf_pose_bridge.cli.frames import print_csv, print_table, TableRow
+from sdf_pose_bridge.cli.frames import MOST_MOVED, print_csv, print_table, TableRow
 from sdf_pose_bridge.cli.loading import load_file, sdf_name
 from sdf_pose_bridge.cli.printing import print_json, print_problems
 from sdf_pose_bridge.errors import SdfError
@@ -28,9 +28,6 @@ from sdf_pose_bridge.names import listed
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.comparison import Change, Difference, differences_of_scenes
 from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
-
-_MOST_MOVED = 20
-"""Largest number of frames that are named because they moved with another one."""
 
 HELP = 'print the changes of TF between two files'
 DESCRIPTION = (
@@ -102,7 +99,7 @@ def _table_row(difference: Difference, units: Units, followers: Sequence[str]) -
         texts = [f'{round(value, 9) * unit.factor + 0.0:.6g}' for value, unit in zip(
             numbers, (*units, *units.of_pose), strict=True)]
         values[1:], old = texts[:2], ' '.join(texts[2:])
-        note = f'with it: {listed(followers, _MOST_MOVED)}' if followers else ''
+        note = f'with it: {listed(followers, MOST_MOVED)}' if followers else ''
     elif change not in (Change.ADDED, Change.REMOVED, Change.RENAMED):
         old = f'{old}, now {difference.new}'
     return TableRow(difference.name, difference.kind.label, values, note, remark=old)

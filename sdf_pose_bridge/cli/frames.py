@@ -20,6 +20,8 @@ from sdf_pose_bridge.geometry.units import Units
 from sdf_pose_bridge.names import printable, shortened
 from sdf_pose_bridge.scene.scene import Scene
 
+MOST_MOVED = 20
+"""Largest number of frames that a line names because they move with another one."""
 _WIDEST_NAME, _NARROWEST_NAME = 80, 6
 _USUAL_COLUMNS = 80
 """Only a narrower table has more digits, and only in a narrower terminal it has no kinds."""

@@ -10,6 +10,7 @@ import re
 import sys
 
 from sdf_pose_bridge.cli.arguments import add_file_arguments
+from sdf_pose_bridge.cli.frames import MOST_MOVED
 from sdf_pose_bridge.cli.given_poses import (
     add_given_unit_arguments,
     formats_help,
@@ -24,9 +25,6 @@ from sdf_pose_bridge.names import listed, printable, scoped_name
 from sdf_pose_bridge.scene.pose_setting import are_close, pose_change
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.comparison import names_of_moved
-
-_MOST_MOVED = 20
-"""Largest number of moved frames that are named."""
 
 HELP = 'write a measured pose into a file'
 DESCRIPTION = (
@@ -119,7 +117,7 @@ def run(options: argparse.Namespace) -> int:
         msg = 'xacro wrote this file, and overwrites it when it runs again'
         print_message(options.command, msg)
     if moved:
-        print(f'moved with it: {listed([*map(printable, moved)], _MOST_MOVED)}')
+        print(f'moved with it: {listed([*map(printable, moved)], MOST_MOVED)}')
     # If the change cannot be printed, nothing is written.
     sys.stdout.flush()
     if not options.dry_run:
