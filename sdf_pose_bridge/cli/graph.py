@@ -46,7 +46,8 @@ _LEGEND = (
     'Arrows start at the frame that a pose is relative to: blue for relative_to in the file, gray '
     'by default.\\lGreen: attached_to, and also relative to unless a blue arrow leads there.\\l'
     'Bold: from the parent of a joint to the joint, and on to its child, the default reference of '
-    'a joint.\\l')
+    'a joint.\\lBoxes: violet for models, green for links, light blue for frames, gray for worlds,'
+    ' white for others. Yellow ellipses are joints.\\l')
 _STYLES = {
     Kind.ROOT: 'shape=box style="filled,bold" fillcolor=gray90',
     Kind.WORLD: 'shape=box style="filled,bold" fillcolor=gray90',

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 import contextlib
 from functools import partial
 import importlib
@@ -36,7 +36,7 @@ from sdf_pose_bridge.cli.viewer import LIBRARIES, UntestedViserError
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.units import Units
 from sdf_pose_bridge.limited_process import LimitedProcess
-from sdf_pose_bridge.problems import errors_of_process
+from sdf_pose_bridge.problems import by_message, errors_of_process
 from sdf_pose_bridge.process_limits import FOR_FILES
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.pose_setting import pose_change
@@ -123,7 +123,7 @@ def run(options: argparse.Namespace) -> int:
                 _write(pages.html(), options.output, {*scene.files, *meshes.files})
                 return 0
             if errors:
-                pages.show_errors(map(str, errors))
+                pages.show_errors(_lines(errors))
             _open(pages.address, options.port)
             watcher = FileWatcher()
             # The standard input cannot be read again.
@@ -191,7 +191,11 @@ def _follow(pages: Any, watcher: FileWatcher, load: Callable[[], Scene]) -> None
         watcher.watch(scene.files, read_since_ns)
         pages.show(scene)
     except SdfError as error:
-        pages.show_errors(map(str, error.errors))
+        pages.show_errors(_lines(error.errors))
+
+
+def _lines(errors: Sequence[SdfError]) -> Iterator[str]:
+    return (f'{error}{other_lines}' for error, other_lines in by_message(errors))
 
 
 def _write(html: str, path: Path, inputs: Iterable[str]) -> None:

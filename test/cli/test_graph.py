@@ -9,7 +9,7 @@ import pytest
 from sdf_texts import model_file
 
 from sdf_pose_bridge import Kind, load_text
-from sdf_pose_bridge.cli.graph import dot_from_scene
+from sdf_pose_bridge.cli.graph import _STYLES, dot_from_scene
 
 ARM = """
 <link name="base"/>
@@ -39,6 +39,12 @@ def arrows_to(name, dot):
     labels = {number: label.split(r'\n')[0] for number, label in labels_in(dot).items()}
     return {labels[start]: colors for start, end, colors in EDGE.findall(dot)
             if labels[end] == name}
+
+
+@pytest.mark.parametrize('kind', _STYLES.keys() - {Kind.ROOT})
+def test_legend_explains_the_colour_of_each_kind(kind):
+    label = re.search('label="(.*)"', dot_of(ARM))[1]
+    assert re.search(f' {kind.label}s[,.\\\\]', label.partition('Boxes')[2])
 
 
 def test_missing_program_is_an_error_of_one_line(refused, monkeypatch):

@@ -101,11 +101,15 @@ class VisiblePart:
         self.size_m = _extent_m(origins, boxes)
         """The extent of everything."""
         origins = origins[self.frames]
-        bounds = bounds_of_interest(origins, boxes, np.concatenate([
-            origins[shown.is_in_robot[elements[self.frames]]],
-            # A model alone is shown as a whole.
-            boxes[shown.is_in_robot[self._bodies]].mean(axis=1) if scene.world_names
-            else boxes.reshape(-1, 3)]))
+        # A model alone is shown as a whole.
+        parts = boxes[shown.is_in_robot[self._bodies]] if scene.world_names else boxes
+        points = np.concatenate([
+            origins[shown.is_in_robot[elements[self.frames]]], parts.mean(axis=1)])
+        # So is a small thing in a world, such as a watch, but not the fence around an arm.
+        if not scene.world_names or (len(parts) and math.dist(*bounds_of_points(points))
+                                     < np.median(np.linalg.norm(np.ptp(parts, axis=1), axis=1))):
+            points = np.concatenate([points, parts.reshape(-1, 3)])
+        bounds = bounds_of_interest(origins, boxes, points)
         self.view_m = math.dist(*bounds) or self.size_m
         """The extent of the first view, without axes."""
         self.axes_length_m = _length_of_axes(tree, self.view_m)
@@ -172,9 +176,9 @@ class Drawing:
         :param reference: index of another one, to which there is a line; ``ROOT_IS_PARENT`` for
             no line.
         :param unit: the unit of the length of this line.
-        :return: in JSON, for each name of a frame or a missing mesh, and for the length of the
-            line, its text, whether names do not cover it, and x, y and z of the point that it is
-            right of and below.
+        :return: in JSON, the labels: for each name of a frame or a missing mesh, and for the
+            length of the line, its text, whether names do not cover it, and x, y and z of the
+            point that it is right of and below; and the number of names that are too many.
         """
         scene, visible, origins = shown.scene, self.visible, shown.poses[:, :3]
         self._axes.batched_wxyzs, self._axes.batched_positions = _places(
@@ -204,13 +208,14 @@ class Drawing:
             labels.insert(0, (f'{unit.factor * length_m:.{unit.digits}f} {unit.name}', True,
                               *measured[0].mean(axis=0)))
         self._measured.points = measured
-        named = visible.frames[:0 if NAMES in visible.hidden else MOST_NAMES].tolist()
+        named = visible.frames[:0 if NAMES in visible.hidden else None].tolist()
         labels += [
             (printable(shortened(shown.short_names[index])), index == frame, *origins[index])
-            for index in dict.fromkeys((*named, frame)) if index >= 0]
+            for index in dict.fromkeys((*named[:MOST_NAMES], frame)) if index >= 0]
         self._marker.visible = frame >= 0
         self._marker.wxyz, self._marker.position = _places(shown.poses[frame])
-        return json.dumps(labels)
+        return json.dumps(
+            {'labels': labels, 'unlisted': len({*named} - {*named[:MOST_NAMES], frame})})
 
     def _add_surroundings(self) -> None:
         """Add light from above and from two sides, and a grid on the ground."""

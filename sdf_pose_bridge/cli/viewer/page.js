@@ -74,12 +74,16 @@
     return {texts, lines, x, y, right: x + 6.5 * Math.max(...lines.map(line => line.length)),
             bottom: y + 14 * lines.length};
   };
-  // Names at one place are lines of one text; of others, those that would overlap are left out.
+  // Names at one place are lines of one text; of others, those that would overlap are left out,
+  // and their number is in a corner.
   const labelsWithoutOverlaps = canvas => {
-    const seen = JSON.parse(given('labels', '[]')).map(([text, isFirst, ...point]) => {
+    const {labels: all, unlisted} = JSON.parse(given('labels', '{"labels": [], "unlisted": 0}'));
+    const seen = all.map(([text, isFirst, ...point]) => {
       const {depth, x, y} = inPicture(point, canvas);
       return [!isFirst, depth, labelOf([text], Math.round(x), Math.round(y))];
-    }).filter(([, depth]) => depth > 0).sort(([a, near], [b, far]) => a - b || near - far);
+    }).filter(([, depth, {x, y}]) => depth > 0
+      && x >= 0 && x <= canvas.clientWidth && y >= 0 && y <= canvas.clientHeight
+    ).sort(([a, near], [b, far]) => a - b || near - far);
     const isOn = (a, b) => a.x < b.right && b.x < a.right && a.y < b.bottom && b.y < a.bottom;
     const placed = [];
     for (const [, , label] of seen) {
@@ -90,7 +94,10 @@
         if (placed.every((each, i) => i === k || !isOn(each, grown))) placed[k] = grown;
       }
     }
-    return placed;
+    const leftOut = placed.reduce((sum, {texts}) => sum - texts.length, seen.length + unlisted);
+    const note = `${leftOut} more name${leftOut > 1 ? 's do' : ' does'} not fit; the page of `
+      + '"sdf_pose view" shows names at the pointer';
+    return leftOut ? [...placed, labelOf([note], 8, 8)] : placed;
   };
   const given = (name, otherwise) =>
     document.querySelector(`[data-${name}]`)?.dataset[name] ?? otherwise;
@@ -212,6 +219,8 @@
       '.mantine-CloseButton-root': {'aria-label': 'close'},
       '[data-dock-header] .mantine-ActionIcon-root': {'aria-label': 'settings of the view'},
       [FOLDER]: {role: 'button', tabindex: 0},
+      // A hint of viser is over the title and its icons.
+      [SEARCH]: {placeholder: 'or click on a frame'},
     })) for (const element of document.querySelectorAll(found)) {
       Object.entries(attributes).forEach(([name, value]) => element.setAttribute(name, value));
       if (found === FOLDER) element.ariaExpanded = element.nextSibling?.ariaHidden !== 'true';

@@ -63,7 +63,7 @@ class SelectedFrame:
         self.hidden: set[str] = set()
         """The ids of the frames that are hidden with all that is in them."""
         with folder:
-            self._search = gui.add_text('search', '', hint='frames are selected in the scene, too')
+            self._search = gui.add_text('search', '')
             self._rows = gui.add_html('')
         self._folder = gui.add_folder('Selected frame', visible=False)
         with self._folder:

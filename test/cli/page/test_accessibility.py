@@ -51,6 +51,8 @@ def test_each_control_has_a_name(page):
     select(page, 'slide')
     wait_until_movable(page)
     page.wait_for("document.querySelector('.description')")
+    # A hint that viser shows at the pointer would be over the title and its icons.
+    page.wait_for("document.querySelector('[aria-label=search]').placeholder.includes('click')")
     found = list(controls(page))
     assert [role for role, name in found if not name] == []
     assert {

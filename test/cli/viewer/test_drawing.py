@@ -11,7 +11,7 @@ from sdf_texts import model_file, world_file
 pytest.importorskip('trimesh', reason='needs trimesh')
 pytest.importorskip('viser', reason='needs viser')
 
-from sdf_pose_bridge.cli.viewer.drawing import Drawing, VisiblePart
+from sdf_pose_bridge.cli.viewer.drawing import Drawing, MOST_NAMES, VisiblePart
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.units import METRES
@@ -36,6 +36,20 @@ def test_home_view_has_the_whole_of_a_model_alone(drawing_of):
     drawing, _ = drawing_of(
         '<link name="hand"><pose>0.2 0 0 0 0 0</pose></link>'
         f'<link name="case"><visual name="v">{BOX}</visual></link>')
+    low, high = drawing.visible.bounds
+    assert (low <= -0.5).all()
+    assert (high >= 0.5).all()
+
+
+def test_home_view_has_the_whole_of_a_small_thing_in_a_world(drawing_of):
+    # The hand is smaller than the distance of the frames, and the case is larger.
+    small = '<geometry><box><size>0.1 0.02 0.01</size></box></geometry>'
+    drawing, _ = drawing_of(
+        f'<model name="watch"><link name="case"><visual name="v">{BOX}</visual>'
+        f'<visual name="dial">{BOX}</visual></link><link name="hand">'
+        f'<pose>0 0 0.2 0 0 0</pose><visual name="v">{small}</visual></link>'
+        '<joint name="axis" type="continuous"><parent>case</parent><child>hand</child>'
+        '<axis><xyz>0 0 1</xyz></axis></joint></model>', text_of_file=world_file)
     low, high = drawing.visible.bounds
     assert (low <= -0.5).all()
     assert (high >= 0.5).all()
@@ -68,7 +82,7 @@ def test_selected_frame_and_its_name_stand_at_its_new_pose(drawing_of):
     drawing, shown = drawing_of('<link name="a"/>')
     frame = shown.tree.frame_ids.index('a')
     moved = shown.with_pose(frame, Pose(3.0, 0.0, 1.0))
-    assert json.loads(drawing.show(moved, frame, ROOT_IS_PARENT, METRES)) == [
+    assert json.loads(drawing.show(moved, frame, ROOT_IS_PARENT, METRES))['labels'] == [
         ['m', False, 0.0, 0.0, 0.0], ['a', True, 3.0, 0.0, 1.0]]
     assert drawing._marker.position.tolist() == [3.0, 0.0, 1.0]
     assert shown.pose_of(frame) == Pose()
@@ -91,8 +105,18 @@ def test_name_of_a_missing_mesh_precedes_those_of_frames(drawing_of):
     drawing, shown = drawing_of(
         f'<link name="{"a" * 40}">'
         f'<visual name="v"><pose>0.2 1 0 0 0 0</pose>{mesh}</visual></link>')
-    assert json.loads(drawing.show(shown, -1, ROOT_IS_PARENT, METRES)) == [
+    assert json.loads(drawing.show(shown, -1, ROOT_IS_PARENT, METRES))['labels'] == [
         ['a.stl?', True, 0.2, 1.0, 0.0], ['m', False, *[0.0] * 3], ['a' * 40, False, *[0.0] * 3]]
+
+
+def test_names_that_are_too_many_are_counted(drawing_of):
+    frames = ''.join(f'<frame name="f{number}"/>' for number in range(MOST_NAMES + 3))
+    drawing, shown = drawing_of(f'<link name="a"/>{frames}')
+    # The model and its link are frames, too.
+    for selected, count in (-1, 5), (shown.ids.index('a'), 5), (shown.ids.index('f502'), 4):
+        told = json.loads(drawing.show(shown, selected, ROOT_IS_PARENT, METRES))
+        assert len(told['labels']) + told['unlisted'] == MOST_NAMES + 5
+        assert told['unlisted'] == count
 
 
 @pytest.mark.parametrize(('size', 'ground_m'), [('1 1 1', -0.5), ('3 3 1', 0.0)])

@@ -62,7 +62,7 @@ def select(page, frame):
 
 def labels(page):
     (data,) = re.findall('data-labels="([^"]*)"', page._data['labels'].content)
-    return json.loads(html.unescape(data))
+    return json.loads(html.unescape(data))['labels']
 
 
 def test_name_moves_with_its_frame_when_the_file_is_read_again(page_of, scene_of):
