@@ -91,6 +91,8 @@ def test_frame_is_selected_typed_written_and_cancelled_by_the_keyboard(page, sho
     page.wait_for(has_keyboard(control('x [m]')))
     page.keys('7', 'Escape')
     page.wait_for(f"{control('x [m]')}.value === '0.2500' && !{strip_button('cancel')}")
+    press(page, 'undo the last write')
+    page.wait_for(f"!{strip_button('undo the last write')}")
     enter(page, control('search'), '')
 
 
