@@ -203,6 +203,8 @@ def _facts(scene: Scene, names: Sequence[str]) -> list[_Facts]:
     for index, sensor in scene.sensors.items():
         found[index][Change.FRAME_ID, 0] = (
             sensor.frame_id or 'by its name',
+            *((f'in Harmonic {sensor.older_frame_id or "by its name"}',)
+              if sensor.older_frame_id != sensor.frame_id else ()),
             *((sensor.optical_frame_id or 'and _optical',) if sensor.is_camera else ()))
     for joint in scene.joints:
         facts = found[joint.element]

@@ -151,6 +151,8 @@ ONE_CHANGE = [
     ('mimic', ARM, MIMIC, '', 'm::j', '2 * m::i + 1', 'none'),
     ('frame id', CAMERA, '<camera/>', '<camera/><gz_frame_id>f</gz_frame_id>', 'm::l::s',
      'by its name and _optical', 'f and _optical'),
+    ('frame id', CAMERA, '<camera/>', '<camera/><frame_id>f</frame_id>', 'm::l::s',
+     'by its name and _optical', 'f in Harmonic by its name and _optical'),
     ('frame id', CAMERA, '<camera/>', '<camera><optical_frame_id>o</optical_frame_id></camera>',
      'm::l::s', 'by its name and _optical', 'by its name o'),
     ('frame id', CAMERA, '<sensor name="s" type="camera"><camera/>',
