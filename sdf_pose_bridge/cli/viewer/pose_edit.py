@@ -32,7 +32,7 @@ FindChange: TypeAlias = Callable[[Scene, int, Pose, Measure], PoseChange]
 """Finds a change as :func:`~sdf_pose_bridge.scene.pose_setting.pose_change` does."""
 
 _SEVERAL = re.compile(r'\s|[\[({<:=]|[,;].*[,;]', re.DOTALL)
-"""What a text of one number does not have; a comma may be that of thousands."""
+"""A text of one number has none of these, but for a comma of thousands."""
 
 
 class PoseEdit:
