@@ -27,7 +27,7 @@ def links(n):
 
 FIELDS = {
     'search': lambda n: partial(
-        html_of_tree, ShownScene(load_text(links(n // 20)), TfOptions()), 'x' * n, '', (), ()),
+        html_of_tree, ShownScene(load_text(links(n // 100)), TfOptions()), 'x' * n, '', (), ()),
     'self._name': lambda n: partial(number_from_text, '1' * n),  # of a joint
     'label': lambda n: partial(typed_poses_from_text, '1 ' * n),  # of a number of a pose
 }
