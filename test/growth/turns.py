@@ -20,7 +20,8 @@ def fault_of_growth(*calls):
         # Other processes share the caches of the machine: the shortest of three or more counts.
         shortest_s = list(map(min, shortest_s, map(_processor_s, calls)))
         hostile_s, half_s, plain_s = shortest_s
-        if turn >= 2 and hostile_s < 2.6 * half_s and hostile_s < 10.0 * plain_s:
+        # Of what takes a twentieth of something plain, caches of the processor decide.
+        if turn >= 2 and hostile_s < 2.6 * half_s + 0.05 * plain_s and hostile_s < 10.0 * plain_s:
             return ''
     return f'{hostile_s / half_s:.1f} times its half, {hostile_s / plain_s:.1f} times plain'
 
