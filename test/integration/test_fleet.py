@@ -145,6 +145,7 @@ def test_too_many_topics_prevent_the_start(start_bridge, file):
     patterns = [f'{{model}}/j{number}' for number in range(400)]
     bridge = start_bridge(sdf_file=file, use_joint_states=True, joint_states_topics=patterns)
     assert bridge.wait_for_end() == 1
-    (line,) = bridge.lines
-    assert line.startswith('[FATAL]')
+    # A busy machine, or the middleware, may have more to say.
+    (line,) = [each for each in bridge.lines if each.startswith('[FATAL]')]
+    assert bridge.count_of('Traceback') == 0
     assert 'joint_states_topics names 1200 topics with 3 models' in line
