@@ -27,8 +27,8 @@ class Profile(NamedTuple):
     """Path of the profile in the share directory of this package."""
     variable: str
     """The environment variable with the path of a file of profiles."""
-    local_file: str
-    """The name of a file of profiles that is used in the working directory."""
+    local_file: str = ''
+    """The name of a file of profiles that is used in the working directory, if there is one."""
 
 
 _FAST_DDS = ('', 'rmw_fastrtps_cpp', 'rmw_fastrtps_dynamic_cpp')
@@ -62,7 +62,7 @@ def use_profile(environment: MutableMapping[str, str]) -> str:
         reason = f'{chosen[0]} is set'
     elif profile is None:
         reason = f'there is none for ROS_DISTRO "{distro}"'
-    elif Path(profile.local_file).exists():
+    elif Path(profile.local_file).is_file():
         reason = f'{profile.local_file} is in the working directory'
     else:
         try:

@@ -95,3 +95,10 @@ def test_a_profile_of_another_middleware_is_one_line(monkeypatch):
     assert use_profile(environment).endswith('set CYCLONEDDS_URI to use your own')
     assert environment['CYCLONEDDS_URI'].endswith('config/c.xml')
     assert f'{OLD} is set' in use_profile({**JAZZY, OLD: 'mine.xml'})
+
+
+def test_the_profile_of_a_middleware_without_a_local_file_is_used(monkeypatch):
+    cyclone = Profile(('rmw_cyclonedds_cpp',), ('jazzy',), 'config/c.xml', 'CYCLONEDDS_URI')
+    monkeypatch.setattr(middleware, 'PROFILES', (cyclone,))
+    environment = {'RMW_IMPLEMENTATION': 'rmw_cyclonedds_cpp', **JAZZY}
+    assert use_profile(environment).endswith('set CYCLONEDDS_URI to use your own')
