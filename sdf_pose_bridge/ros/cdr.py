@@ -31,6 +31,8 @@ NANOSECONDS = 1_000_000_000
 Rows: TypeAlias = NDArray[np.intp]
 """Indices of records, such as those of the transforms that joints move."""
 
+NO_ROWS: Rows = np.array([], np.intp)
+
 # Sizes in bytes.
 _LENGTH = 4
 _STAMP = 8
@@ -184,8 +186,6 @@ class PoseType(NamedTuple):
 
     is_sequence: bool = False
     """Whether it has many poses, and begins with their number."""
-    has_header: bool = True
-    """Whether it has the stamp and the frame id of each pose."""
     has_child: bool = False
     """Whether it has a child frame id, which names a model or a frame in one."""
 
@@ -232,10 +232,9 @@ def poses_from_bytes(data: bytes, type_: PoseType) -> Iterator[StampedPose]:
             place += _LENGTH
         for _ in range(count):
             place += -place % 4
-            sec, nanosec, frame_id, child_frame_id = 0, 0, '', ''
-            if type_.has_header:
-                sec, nanosec, _ = stamp_and_length.unpack_from(data, place)
-                frame_id, place = _string_from_bytes(data, place + _STAMP, length_format)
+            sec, nanosec, _ = stamp_and_length.unpack_from(data, place)
+            frame_id, place = _string_from_bytes(data, place + _STAMP, length_format)
+            child_frame_id = ''
             if type_.has_child:
                 child_frame_id, place = _string_from_bytes(data, place, length_format)
             place += (_START - place) % 8

@@ -27,12 +27,12 @@ from rclpy.task import Future
 
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.ros.background import result_from_executor, result_from_thread, wake
-from sdf_pose_bridge.ros.cdr import NANOSECONDS, Rows
+from sdf_pose_bridge.ros.cdr import NANOSECONDS, NO_ROWS, Rows
 from sdf_pose_bridge.ros.log_lines import text_about_defect
 from sdf_pose_bridge.ros.message_failures import MessageFailures
 from sdf_pose_bridge.ros.message_problems import MessageProblems
 from sdf_pose_bridge.ros.parameters import Settings
-from sdf_pose_bridge.ros.period import NO_ROWS, Period, union
+from sdf_pose_bridge.ros.period import Period, union
 from sdf_pose_bridge.ros.published_frames import MovingTopics
 from sdf_pose_bridge.ros.state_messages import Effect, KnownEffects, Message, StateSource
 from sdf_pose_bridge.ros.state_report import StateReport
@@ -115,7 +115,7 @@ class JointStates:
         self._now_ns = 0
         self._is_simulated = self._has_jumped = False
         self._has_moved = self._has_reported_missing = False
-        self._period: Period[StateSource] = Period()
+        self._period = Period()
         self._processed: set[StateSource] = set()
         self._start_frames()
         self._end_period()

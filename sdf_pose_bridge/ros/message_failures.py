@@ -7,24 +7,16 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 import math
 import time
-from typing import Protocol, TypeVar
+from typing import TypeVar
 
 from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.ros.state_messages import StateSource
 
 LONGEST_S = 10.0
 """Time in s after which failures of all messages are those of the node; a failure is forgotten
 after the same time."""
 
 _Result = TypeVar('_Result')
-
-
-class Source(Protocol):
-    """A source of messages."""
-
-    name: str
-
-    def publishers(self) -> list[str]:
-        """Return the full name of the node of each publisher."""
 
 
 class AllMessagesFailError(Exception):
@@ -50,11 +42,11 @@ class MessageFailures:
         self._log, self._clock = log, clock
         self._raised: tuple[type[Exception], ...] = AllMessagesFailError, *raised
         # By source, the time of its last failure and a line.
-        self._last: dict[Source, tuple[float, str]] = {}
+        self._last: dict[StateSource, tuple[float, str]] = {}
         self._since = math.inf
 
     def attempt(
-        self, sources: Collection[Source], default: _Result, function: Callable[..., _Result],
+        self, sources: Collection[StateSource], default: _Result, function: Callable[..., _Result],
         *arguments: object,
     ) -> _Result:
         """
@@ -71,7 +63,7 @@ class MessageFailures:
             self._note(error, sources)
             return default
 
-    def note_success(self, sources: Collection[Source]) -> None:
+    def note_success(self, sources: Collection[StateSource]) -> None:
         """Note that messages of sources were processed."""
         if sources:
             self._since = math.inf
@@ -80,11 +72,11 @@ class MessageFailures:
         """Return a line for each source with a failure not long ago."""
         return [line for _, line in self._recent().values()]
 
-    def _recent(self) -> dict[Source, tuple[float, str]]:
+    def _recent(self) -> dict[StateSource, tuple[float, str]]:
         least = self._clock() - LONGEST_S
         return {each: last for each, last in self._last.copy().items() if last[0] >= least}
 
-    def _note(self, error: Exception, sources: Collection[Source]) -> None:
+    def _note(self, error: Exception, sources: Collection[StateSource]) -> None:
         now, self._last = self._clock(), self._recent()
         self._since = min(self._since, now) if self._last else now
         self._log()

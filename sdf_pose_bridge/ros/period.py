@@ -13,29 +13,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 import math
-from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
-from sdf_pose_bridge.ros.cdr import Rows
-
-NO_ROWS: Rows = np.array([], np.intp)
-
-
-class _Source(Protocol):
-    last_ns: int
+from sdf_pose_bridge.ros.cdr import NO_ROWS, Rows
+from sdf_pose_bridge.ros.state_messages import StateSource
 
 
-_AnySource = TypeVar('_AnySource', bound=_Source)
-
-
-class Period(Generic[_AnySource]):
+class Period:
     """A period, or the time until the next one begins."""
 
     def __init__(self) -> None:
         self.ends_ns = math.inf
         """Time of the node in ns at which it ends; infinity if there is none."""
-        self.awaited: Sequence[_AnySource] = ()
+        self.awaited: Sequence[StateSource] = ()
         """The sources whose messages do not wait for its end."""
         self._rows = NO_ROWS
 
@@ -44,7 +35,7 @@ class Period(Generic[_AnySource]):
         """Whether there is a period."""
         return self.ends_ns < math.inf
 
-    def begin(self, ends_ns: float, awaited: Sequence[_AnySource]) -> None:
+    def begin(self, ends_ns: float, awaited: Sequence[StateSource]) -> None:
         """Begin a period after a publication."""
         self.ends_ns, self.awaited = ends_ns, awaited
 
@@ -61,7 +52,7 @@ class Period(Generic[_AnySource]):
         """Let no transforms wait."""
         self._rows = NO_ROWS
 
-    def end(self, sources: Sequence[_AnySource]) -> Rows:
+    def end(self, sources: Sequence[StateSource]) -> Rows:
         """End the period, and await all sources; return the transforms that have waited."""
         rows, self._rows = self._rows, NO_ROWS
         self.begin(math.inf, sources)

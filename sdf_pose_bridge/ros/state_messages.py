@@ -18,11 +18,10 @@ from rclpy.subscription import Subscription
 from sdf_pose_bridge.geometry.poses import pose_products
 from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.names import hint_from_names, scoped_name, SEPARATOR
-from sdf_pose_bridge.ros.cdr import Rows, SerializedNames
+from sdf_pose_bridge.ros.cdr import NO_ROWS, Rows, SerializedNames
 from sdf_pose_bridge.ros.log_lines import names_in_line, RareWarnings
 from sdf_pose_bridge.ros.message_counts import MessageCounts
 from sdf_pose_bridge.ros.other_publishers import names_of_nodes, publishers_of_topic
-from sdf_pose_bridge.ros.period import NO_ROWS
 from sdf_pose_bridge.ros.published_frames import MovingTopics
 from sdf_pose_bridge.ros.setting_rules import MOST_CHARACTERS
 from sdf_pose_bridge.tf.joint_motion import NO_DOF
