@@ -47,7 +47,7 @@ from collections.abc import Sequence
 import re
 from typing import NamedTuple
 
-from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.printed_text import shortened
 
 _LONGEST_MESSAGE = 2000
 _QUOTED = re.compile(r'"([^"]*)"')

@@ -20,7 +20,7 @@ from sdf_pose_bridge.errors import (
     TemporaryReadError,
 )
 from sdf_pose_bridge.limited_process import ProcessEndedError
-from sdf_pose_bridge.names import listed
+from sdf_pose_bridge.printed_text import listed
 from sdf_pose_bridge.process_limits import LimitExceededError
 
 MOST_PROBLEMS = 100

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from sdf_pose_bridge.geometry.units import DEGREES, METRES, MILLIMETRES, RADIANS
-from sdf_pose_bridge.names import hint_from_names
+from sdf_pose_bridge.nearest_names import hint_from_names
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.tree import DEFAULT_KINDS, TfOptions

@@ -15,7 +15,7 @@ from sdf_pose_bridge.cli.arguments import add_file_arguments, add_format_argumen
 from sdf_pose_bridge.cli.loading import doubts_about_frames, load_file
 from sdf_pose_bridge.cli.printing import in_order, print_json, print_problems
 from sdf_pose_bridge.errors import Place, SdfError, SdfWarning
-from sdf_pose_bridge.names import printable, shortened
+from sdf_pose_bridge.printed_text import printable, shortened
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.include.uris import resource_finder

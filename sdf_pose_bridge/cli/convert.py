@@ -44,7 +44,7 @@ from sdf_pose_bridge.geometry.pose_texts import (
 from sdf_pose_bridge.geometry.poses import Pose, pose_inverse, pose_products, relative_poses
 from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.geometry.sequences import ZYX
-from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.printed_text import printable
 from sdf_pose_bridge.process_limits import renew_limits
 
 CHARACTERS_AT_A_TIME = 500_000

@@ -24,7 +24,7 @@ from sdf_pose_bridge.cli.printing import print_json, print_problems
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.poses import TOLERANCE
 from sdf_pose_bridge.geometry.units import Units
-from sdf_pose_bridge.names import listed
+from sdf_pose_bridge.printed_text import listed
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.comparison import Change, Difference, differences_of_scenes
 from sdf_pose_bridge.tf.tree import DEFAULT_KINDS

@@ -17,7 +17,7 @@ from sdf_pose_bridge.cli.printing import BOLD, DIM, print_json, print_problems, 
 from sdf_pose_bridge.errors import SdfError, SdfWarning
 from sdf_pose_bridge.geometry.poses import TOLERANCE
 from sdf_pose_bridge.geometry.units import Units
-from sdf_pose_bridge.names import printable, shortened
+from sdf_pose_bridge.printed_text import printable, shortened
 from sdf_pose_bridge.scene.scene import Scene
 
 MOST_MOVED = 20

@@ -27,10 +27,10 @@ from sdf_pose_bridge.cli.arguments import (
 )
 from sdf_pose_bridge.cli.loading import scene_of
 from sdf_pose_bridge.cli.printing import CommandError, write_text
-from sdf_pose_bridge.names import printable, shortened
+from sdf_pose_bridge.file_change import replace_file
+from sdf_pose_bridge.printed_text import printable, shortened
 from sdf_pose_bridge.process_limits import lift_limits
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.file_change import replace_file
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.tree import elements_in_model
 

@@ -12,7 +12,7 @@ import threading
 from sdf_pose_bridge.cli.printing import print_problems
 from sdf_pose_bridge.errors import SdfError, SdfWarning
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.printed_text import printable
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.limits import Usage

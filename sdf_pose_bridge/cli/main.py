@@ -29,7 +29,7 @@ from sdf_pose_bridge.cli.printing import (
 )
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.formats import PoseFormatError
-from sdf_pose_bridge.names import hint_from_names, NameIndex
+from sdf_pose_bridge.nearest_names import hint_from_names, NameIndex
 from sdf_pose_bridge.process_limits import FOR_FILES, limited, LimitExceededError, open_streams
 
 _NEGATIVE_NUMBER = re.compile(r'^-(\.?\d|inf|nan)', re.IGNORECASE)

@@ -15,9 +15,9 @@ import textwrap
 from typing import Any, TextIO, TypeVar
 
 from sdf_pose_bridge.errors import SdfError, SdfWarning, UriLookupError
-from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.file_change import replace_file
+from sdf_pose_bridge.printed_text import printable
 from sdf_pose_bridge.problems import by_message
-from sdf_pose_bridge.sdformat.file_change import replace_file
 
 _Problem = TypeVar('_Problem', bound='SdfError | SdfWarning')
 

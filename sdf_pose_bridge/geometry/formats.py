@@ -41,7 +41,7 @@ from sdf_pose_bridge.geometry.units import (
     Unit,
     UNLIKELY,
 )
-from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.printed_text import shortened
 
 LAST_ROW = (0.0, 0.0, 0.0, 1.0)
 """Last row of the 4 x 4 matrix of a pose, exactly; libfranka compares without a tolerance."""

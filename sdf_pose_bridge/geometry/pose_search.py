@@ -26,7 +26,7 @@ from sdf_pose_bridge.geometry.pose_attributes import (
 )
 from sdf_pose_bridge.geometry.pose_names import name_in_tables, Names, names_of, numbers_of
 from sdf_pose_bridge.geometry.units import DEGREES, RADIANS
-from sdf_pose_bridge.names import listed, shortened
+from sdf_pose_bridge.printed_text import listed, shortened
 
 
 class FoundPose(NamedTuple):

@@ -24,7 +24,7 @@ from sdf_pose_bridge.geometry.formats import (
     ROTATION_FORMATS,
 )
 from sdf_pose_bridge.geometry.pose_search import FoundPose, poses_from_text
-from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.printed_text import shortened
 
 FORMATS: Mapping[str, Format] = {**ROTATION_FORMATS, **POSE_FORMATS}
 """All formats of numbers."""

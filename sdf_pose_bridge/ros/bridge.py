@@ -10,7 +10,7 @@ import os
 import signal
 import sys
 
-from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.printed_text import printable
 from sdf_pose_bridge.ros.ending import end_without_memory
 
 LINK_COMMAND = 'ln -s sdf_pose_bridge/sdf_pose_bridge_interfaces .'

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 import math
 import time
 
-from sdf_pose_bridge.sdformat.file_watcher import FileWatcher
+from sdf_pose_bridge.file_watcher import FileWatcher
 from sdf_pose_bridge.tf.loaded_scene import is_temporary, LoadedScene
 
 RETRY_PERIOD_S = 1.0

@@ -30,7 +30,8 @@ from rclpy.qos import DurabilityPolicy, HistoryPolicy, ReliabilityPolicy
 from rclpy.service import Service
 from rclpy.task import Future
 
-from sdf_pose_bridge.names import hint_from_names, printable, shortened
+from sdf_pose_bridge.nearest_names import hint_from_names
+from sdf_pose_bridge.printed_text import printable, shortened
 from sdf_pose_bridge.ros.background import wake
 from sdf_pose_bridge.ros.parameters import DECLARATIONS, Settings, SettingsError, Value
 from sdf_pose_bridge.ros.setting_rules import check_size, MOST_CHARACTERS, MOST_VALUES

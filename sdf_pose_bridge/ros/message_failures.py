@@ -9,7 +9,7 @@ import math
 import time
 from typing import TypeVar
 
-from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.printed_text import printable
 from sdf_pose_bridge.ros.state_messages import StateSource
 
 LONGEST_S = 10.0

@@ -17,7 +17,9 @@ from rclpy.exceptions import InvalidTopicNameException
 from rclpy.validate_full_topic_name import validate_full_topic_name
 from rclpy.validate_topic_name import validate_topic_name
 
-from sdf_pose_bridge.names import hint_from_names, printable, SEPARATOR, shortened
+from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.nearest_names import hint_from_names
+from sdf_pose_bridge.printed_text import printable, shortened
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.anchors import AnchorModels, AnchorPatterns, anchors_from_text
 

@@ -17,7 +17,8 @@ from rclpy.node import Node
 from rclpy.task import Future
 
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.names import hint_from_names, SEPARATOR
+from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.nearest_names import hint_from_names
 from sdf_pose_bridge.ros.cdr import NANOSECONDS, StampedPose
 from sdf_pose_bridge.ros.log_lines import count_in_words, names_in_line
 from sdf_pose_bridge.ros.model_poses import messages_from_poses

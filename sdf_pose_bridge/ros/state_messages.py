@@ -17,7 +17,8 @@ from rclpy.subscription import Subscription
 
 from sdf_pose_bridge.geometry.poses import pose_products
 from sdf_pose_bridge.geometry.rotations import Floats
-from sdf_pose_bridge.names import hint_from_names, scoped_name, SEPARATOR
+from sdf_pose_bridge.names import scoped_name, SEPARATOR
+from sdf_pose_bridge.nearest_names import hint_from_names
 from sdf_pose_bridge.ros.cdr import NO_ROWS, Rows, SerializedNames
 from sdf_pose_bridge.ros.log_lines import names_in_line, RareWarnings
 from sdf_pose_bridge.ros.message_counts import MessageCounts

@@ -26,7 +26,8 @@ from sdf_pose_bridge.errors import (
     SdfError,
 )
 from sdf_pose_bridge.geometry.chains import cycles_from_pointers, ends_from_pointers, Indices
-from sdf_pose_bridge.names import quoted_names, WORLD_FRAME
+from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.printed_text import quoted_names
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.joints import JointChecks, JointEnds
 from sdf_pose_bridge.scene.name_scopes import IS_FRAME_KIND, NameScopes

@@ -13,7 +13,8 @@ import numpy as np
 
 from sdf_pose_bridge.errors import LimitError, LoadError, Place, SdfError
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.names import SEPARATOR, shortened
+from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.printed_text import shortened
 from sdf_pose_bridge.scene.frame_graph import frame_graph_from_elements
 from sdf_pose_bridge.scene.resolution import poses_in_references, scene_from_graph
 from sdf_pose_bridge.scene.scene import Scene

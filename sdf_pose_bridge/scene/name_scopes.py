@@ -16,14 +16,8 @@ import numpy as np
 
 from sdf_pose_bridge.errors import DuplicateNameError
 from sdf_pose_bridge.geometry.chains import ends_from_pointers
-from sdf_pose_bridge.names import (
-    MODEL_FRAME,
-    NameIndex,
-    ROOT_FRAME,
-    scoped_name,
-    SEPARATOR,
-    WORLD_FRAME,
-)
+from sdf_pose_bridge.names import MODEL_FRAME, ROOT_FRAME, scoped_name, SEPARATOR, WORLD_FRAME
+from sdf_pose_bridge.nearest_names import NameIndex
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.elements import Elements, NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind

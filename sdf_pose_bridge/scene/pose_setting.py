@@ -20,6 +20,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from sdf_pose_bridge.errors import Place, PoseNotSetError, SdfError
+from sdf_pose_bridge.file_change import FileChange
 from sdf_pose_bridge.geometry.poses import (
     distance_and_angle,
     OPTICAL_POSE,
@@ -30,9 +31,8 @@ from sdf_pose_bridge.geometry.poses import (
     TOLERANCE,
 )
 from sdf_pose_bridge.geometry.rotations import canonical_quaternion
-from sdf_pose_bridge.names import quoted_names
+from sdf_pose_bridge.printed_text import quoted_names
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.file_change import FileChange
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.limits import Usage

@@ -16,7 +16,9 @@ from numpy.typing import NDArray
 from sdf_pose_bridge.errors import Place, SdfWarning, UnknownFrameError
 from sdf_pose_bridge.geometry.chains import ends_from_pointers, Indices
 from sdf_pose_bridge.geometry.poses import canonical_relative_pose, Pose, PoseArray
-from sdf_pose_bridge.names import hint_from_names, listed, scoped_name, SEPARATOR
+from sdf_pose_bridge.names import scoped_name, SEPARATOR
+from sdf_pose_bridge.nearest_names import hint_from_names
+from sdf_pose_bridge.printed_text import listed
 from sdf_pose_bridge.scene.frame_graph import default_references
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.inertials import Inertial

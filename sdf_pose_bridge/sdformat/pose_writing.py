@@ -16,11 +16,11 @@ import re
 from lxml import etree
 
 from sdf_pose_bridge.errors import Place, PoseNotSetError
+from sdf_pose_bridge.file_change import FileChange
 from sdf_pose_bridge.geometry.formulas import degrees_from_radians
 from sdf_pose_bridge.geometry.pose_attributes import PoseFormat, PoseTextError
 from sdf_pose_bridge.geometry.poses import Pose, relative_pose
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
-from sdf_pose_bridge.sdformat.file_change import FileChange
 from sdf_pose_bridge.sdformat.poses import pose_format_of, pose_from_text
 from sdf_pose_bridge.sdformat.urdf.values import pose_from_xyz_rpy
 from sdf_pose_bridge.sdformat.values import number_from_word

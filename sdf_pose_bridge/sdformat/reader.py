@@ -24,7 +24,9 @@ from sdf_pose_bridge.errors import (
     SdfError,
 )
 from sdf_pose_bridge.geometry.pose_attributes import boolean_from_text, PoseTextError
-from sdf_pose_bridge.names import hint_from_names, ROOT_FRAME, shortened
+from sdf_pose_bridge.names import ROOT_FRAME
+from sdf_pose_bridge.nearest_names import hint_from_names
+from sdf_pose_bridge.printed_text import shortened
 from sdf_pose_bridge.sdformat.elements import (
     Elements,
     ElementsBuilder,

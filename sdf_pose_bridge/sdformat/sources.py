@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 from lxml import etree
 
 from sdf_pose_bridge.errors import Place, SdfError
-from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.printed_text import shortened
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS, Limits, Usage
 from sdf_pose_bridge.sdformat.xml_tree import (

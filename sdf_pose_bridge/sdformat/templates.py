@@ -14,7 +14,7 @@ from typing import NamedTuple
 from lxml import etree
 
 from sdf_pose_bridge.errors import ParsingError, Place
-from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.printed_text import shortened
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import text_of, written_tag, XmlElement
 

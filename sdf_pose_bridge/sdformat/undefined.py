@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from itertools import filterfalse
 
-from sdf_pose_bridge.names import NameIndex
+from sdf_pose_bridge.nearest_names import NameIndex
 from sdf_pose_bridge.sdformat.grammar import Definition, definition_of
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import URDF_TAGS

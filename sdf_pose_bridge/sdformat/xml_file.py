@@ -31,7 +31,7 @@ from sdf_pose_bridge.errors import (
     shortened_message,
     TemporaryReadError,
 )
-from sdf_pose_bridge.names import hint_from_names
+from sdf_pose_bridge.nearest_names import hint_from_names
 from sdf_pose_bridge.process_limits import raise_limits
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.templates import hint_about_template

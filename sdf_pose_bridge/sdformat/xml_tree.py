@@ -17,7 +17,7 @@ from typing import TypeAlias
 
 from lxml import etree
 
-from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.printed_text import shortened
 
 XmlElement: TypeAlias = etree._Element  # noqa: SLF001  # lxml has no public name for it
 

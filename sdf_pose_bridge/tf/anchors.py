@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sdf_pose_bridge.names import hint_from_names, WORLD_FRAME
+from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.nearest_names import hint_from_names
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind

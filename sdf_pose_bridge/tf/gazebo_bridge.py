@@ -17,7 +17,8 @@ import numpy as np
 
 from sdf_pose_bridge.errors import ElementMissingError, SdfWarning
 from sdf_pose_bridge.geometry.chains import Indices
-from sdf_pose_bridge.names import listed, quoted_names, SEPARATOR, unused_name
+from sdf_pose_bridge.names import SEPARATOR, unused_name
+from sdf_pose_bridge.printed_text import listed, quoted_names
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.gazebo_topics import GazeboTopic, GROUPS, is_true, topics_of
 from sdf_pose_bridge.sdformat.grammar import Kind

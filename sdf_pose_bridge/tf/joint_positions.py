@@ -21,7 +21,9 @@ from numpy.typing import NDArray
 
 from sdf_pose_bridge.errors import JointPositionError, Place, SdfWarning
 from sdf_pose_bridge.geometry.poses import relative_pose
-from sdf_pose_bridge.names import hint_from_names, JOINT_SUFFIX, quoted_names, SEPARATOR
+from sdf_pose_bridge.names import JOINT_SUFFIX, SEPARATOR
+from sdf_pose_bridge.nearest_names import hint_from_names
+from sdf_pose_bridge.printed_text import quoted_names
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.joints import Mimic

@@ -12,7 +12,7 @@ import numpy as np
 
 from sdf_pose_bridge.errors import JointPositionError, Place, UnknownFrameError
 from sdf_pose_bridge.geometry.poses import canonical_relative_pose, Pose
-from sdf_pose_bridge.names import NameIndex
+from sdf_pose_bridge.nearest_names import NameIndex
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.joint_motion import NO_DOF
 from sdf_pose_bridge.tf.joint_positions import JointPositions

@@ -21,7 +21,9 @@ from sdf_pose_bridge.errors import (
 )
 from sdf_pose_bridge.geometry.chains import ends_from_pointers, Indices
 from sdf_pose_bridge.geometry.poses import canonical_relative_poses, Pose, PoseArray
-from sdf_pose_bridge.names import hint_from_names, quoted_names, WORLD_FRAME
+from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.nearest_names import hint_from_names
+from sdf_pose_bridge.printed_text import quoted_names
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Joint, ReadOnly, Scene
 from sdf_pose_bridge.sdformat.grammar import Kind

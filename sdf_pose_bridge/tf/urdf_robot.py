@@ -19,7 +19,8 @@ import numpy as np
 
 from sdf_pose_bridge.errors import Place, SdfWarning, UrdfNotMadeError
 from sdf_pose_bridge.geometry.poses import Pose, pose_inverse, pose_product, relative_pose
-from sdf_pose_bridge.names import quoted_names, unused_name
+from sdf_pose_bridge.names import unused_name
+from sdf_pose_bridge.printed_text import quoted_names
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind

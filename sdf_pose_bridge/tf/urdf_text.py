@@ -14,7 +14,7 @@ from lxml import etree
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.geometry.poses import Pose, pose_product
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
-from sdf_pose_bridge.names import printable, shortened
+from sdf_pose_bridge.printed_text import printable, shortened
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind

@@ -12,7 +12,7 @@ import numpy as np
 from sdf_pose_bridge.errors import SdfError, SdfWarning
 from sdf_pose_bridge.geometry.poses import Pose, pose_product
 from sdf_pose_bridge.geometry.rotations import Floats
-from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.printed_text import shortened
 from sdf_pose_bridge.problems import MOST_PROBLEMS, Problems
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.scene import Scene

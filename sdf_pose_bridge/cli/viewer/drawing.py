@@ -32,7 +32,7 @@ from sdf_pose_bridge.cli.viewer.view_point import (
 )
 from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.geometry.units import Unit
-from sdf_pose_bridge.names import printable, shortened
+from sdf_pose_bridge.printed_text import printable, shortened
 from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
 

@@ -17,7 +17,7 @@ from sdf_pose_bridge.cli.viewer.shown_scene import JointRange, short_names
 from sdf_pose_bridge.geometry.formats import PoseFormatError
 from sdf_pose_bridge.geometry.pose_texts import number_from_text
 from sdf_pose_bridge.geometry.units import Units
-from sdf_pose_bridge.names import printable, shortened
+from sdf_pose_bridge.printed_text import printable, shortened
 
 _STEPS, _STEP_S = 31, 0.05
 """Number and time of the steps in which the page moves a joint through its range."""

@@ -23,7 +23,7 @@ from trimesh.resolvers import FilePathResolver
 
 from sdf_pose_bridge import Limits, SdfError
 from sdf_pose_bridge.limited_process import LimitedProcess, ProcessEndedError
-from sdf_pose_bridge.names import printable, quoted_names, shortened
+from sdf_pose_bridge.printed_text import printable, quoted_names, shortened
 from sdf_pose_bridge.process_limits import Allowance, LimitExceededError
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
 from sdf_pose_bridge.sdformat.limits import Usage

@@ -34,7 +34,7 @@ from sdf_pose_bridge.cli.viewer.view_point import (
     view_of_bounds,
 )
 from sdf_pose_bridge.geometry.units import DEGREES, RADIANS, Units
-from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.printed_text import printable
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfOptions
 

@@ -14,7 +14,7 @@ import trimesh
 from sdf_pose_bridge import Kind, Scene
 from sdf_pose_bridge.cli.viewer.meshes import MeshPart, MeshReader
 from sdf_pose_bridge.geometry.rotations import Floats, matrix_from_quaternion
-from sdf_pose_bridge.names import printable, quoted_names
+from sdf_pose_bridge.printed_text import printable, quoted_names
 from sdf_pose_bridge.sdformat.shapes import Shape
 
 MOST_SURFACES = 5_000

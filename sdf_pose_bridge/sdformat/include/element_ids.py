@@ -15,7 +15,8 @@ from collections.abc import Hashable, Iterator
 from heapq import heappop, heappush
 from itertools import count, islice
 
-from sdf_pose_bridge.names import hint_from_names, scoped_name, SEPARATOR
+from sdf_pose_bridge.names import scoped_name, SEPARATOR
+from sdf_pose_bridge.nearest_names import hint_from_names
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.xml_tree import (
     attribute_of,

@@ -30,13 +30,8 @@ from sdf_pose_bridge.errors import (
     SdfError,
     UriLookupError,
 )
-from sdf_pose_bridge.names import (
-    is_reserved,
-    listed,
-    ROOT_FRAME,
-    SEPARATOR,
-    shortened,
-)
+from sdf_pose_bridge.names import is_reserved, ROOT_FRAME, SEPARATOR
+from sdf_pose_bridge.printed_text import listed, shortened
 from sdf_pose_bridge.sdformat.documents import Document, document_from_file
 from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.include.manifests import model_file_from_directory, ModelFile

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from sdf_pose_bridge.errors import FileReadError, ParsingError, Place, SdfWarning
-from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.printed_text import shortened
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.versions import NEWEST, version_numbers
 from sdf_pose_bridge.sdformat.xml_file import xml_from_file

@@ -20,12 +20,7 @@ from lxml import etree
 from sdf_pose_bridge.errors import MergeIncludeError
 from sdf_pose_bridge.geometry.pose_attributes import PoseTextError
 from sdf_pose_bridge.geometry.poses import Pose, pose_product
-from sdf_pose_bridge.names import (
-    MODEL_FRAME,
-    PROXY_END,
-    PROXY_START,
-    WORLD_FRAME,
-)
+from sdf_pose_bridge.names import MODEL_FRAME, PROXY_END, PROXY_START, WORLD_FRAME
 from sdf_pose_bridge.sdformat.grammar import (
     Definition,
     definition_of,

@@ -19,7 +19,8 @@ from typing import NamedTuple
 from urllib.parse import unquote, urlsplit
 
 from sdf_pose_bridge.errors import AddressError
-from sdf_pose_bridge.names import NameIndex, quoted_names
+from sdf_pose_bridge.nearest_names import NameIndex
+from sdf_pose_bridge.printed_text import quoted_names
 from sdf_pose_bridge.sdformat.include.manifests import MANIFEST
 from sdf_pose_bridge.sdformat.templates import hint_about_missing_file
 

@@ -18,7 +18,8 @@ from typing import NamedTuple
 from sdf_pose_bridge.errors import DuplicateNameError, ElementInvalidError, ParsingError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.units import LARGEST_ANGLE_RAD
-from sdf_pose_bridge.names import JOINT_SUFFIX, shortened, unused_name
+from sdf_pose_bridge.names import JOINT_SUFFIX, unused_name
+from sdf_pose_bridge.printed_text import shortened
 from sdf_pose_bridge.sdformat.grammar import definition_of, Item
 from sdf_pose_bridge.sdformat.inertials import MOMENTS
 from sdf_pose_bridge.sdformat.sources import Sources

@@ -10,7 +10,7 @@ from typing import TypeAlias
 
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
-from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.printed_text import shortened
 from sdf_pose_bridge.sdformat.grammar import Item
 from sdf_pose_bridge.sdformat.values import number_from_stream
 from sdf_pose_bridge.sdformat.xml_tree import text_of, WHITE_SPACE, written_tag, XmlElement

@@ -17,7 +17,7 @@ from sdf_texts import (
 )
 
 from sdf_pose_bridge import load
-from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.printed_text import shortened
 
 LEAF = """<sdf version="1.9"><model name="leaf"><pose>0 0 1 0 0 0</pose>
 <link name="body"><pose>0 1 0 0 0 0</pose></link></model></sdf>"""

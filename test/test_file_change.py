@@ -17,7 +17,7 @@ from processes import started
 import pytest
 
 from sdf_pose_bridge.errors import FileWriteError
-from sdf_pose_bridge.sdformat.file_change import FileChange, replace_file
+from sdf_pose_bridge.file_change import FileChange, replace_file
 
 
 def change_of(text, old, new, encoding='utf-8', path='cell.sdf'):
@@ -249,7 +249,7 @@ def test_a_killed_process_leaves_the_old_file_or_the_new_one(path):
     random_numbers = random.Random(1)
     rest = b'x' * 300_000
     program = (
-        'from sdf_pose_bridge.sdformat.file_change import replace_file\n'
+        'from sdf_pose_bridge.file_change import replace_file\n'
         'texts = [word + b"x" * 300_000 for word in (b"old", b"new")]\n'
         'print(flush=True)\n'
         'while True:\n'

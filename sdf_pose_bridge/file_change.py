@@ -18,7 +18,7 @@ import tempfile
 from typing import NamedTuple
 
 from sdf_pose_bridge.errors import FileWriteError, Place
-from sdf_pose_bridge.names import printable, shortened
+from sdf_pose_bridge.printed_text import printable, shortened
 
 _LINES_AROUND = 3
 _LONGEST_PART = 1000

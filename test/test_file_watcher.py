@@ -8,7 +8,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from sdf_pose_bridge.sdformat.file_watcher import FileWatcher
+from sdf_pose_bridge.file_watcher import FileWatcher
 
 LONG_AGO = 10 ** 18
 LATER = 10 ** 19
