@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from sdf_pose_bridge.errors import SdfError as SdfError
     from sdf_pose_bridge.errors import SdfWarning as SdfWarning
     from sdf_pose_bridge.errors import UnknownFrameError as UnknownFrameError
+    from sdf_pose_bridge.export.urdf_text import urdf_from_scene as urdf_from_scene
     from sdf_pose_bridge.geometry.poses import Pose as Pose
     from sdf_pose_bridge.scene.loading import load as load
     from sdf_pose_bridge.scene.loading import load_text as load_text
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     from sdf_pose_bridge.sdformat.grammar import Kind as Kind
     from sdf_pose_bridge.sdformat.limits import Limits as Limits
     from sdf_pose_bridge.tf.joint_positions import scene_at_positions as scene_at_positions
-    from sdf_pose_bridge.tf.urdf_text import urdf_from_scene as urdf_from_scene
 
 _HOMES = {
     'Kind': 'sdformat.grammar',
@@ -42,7 +42,7 @@ _HOMES = {
     'load': 'scene.loading',
     'load_text': 'scene.loading',
     'scene_at_positions': 'tf.joint_positions',
-    'urdf_from_scene': 'tf.urdf_text',
+    'urdf_from_scene': 'export.urdf_text',
 }
 
 __all__ = list(_HOMES)

@@ -4,7 +4,7 @@
 
 import re
 
-from sdf_texts import joint, world_file
+from sdf_texts import joint, plugin, world_file
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.ros.cdr import StampedPose
@@ -15,11 +15,6 @@ from sdf_pose_bridge.ros.state_messages import KnownEffects, StateSource
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
-
-
-def plugin(system, parameters=''):
-    return f'<plugin filename="f" name="gz::sim::systems::{system}">{parameters}</plugin>'
-
 
 SHARED = plugin('MecanumDrive', '<odom_topic>shared</odom_topic><frame_id>s</frame_id>')
 TEXT = world_file(

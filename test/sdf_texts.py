@@ -12,6 +12,7 @@ TYPES = {'joint': 'fixed', 'sensor': 'camera', 'light': 'point', 'particle_emitt
 LINK = '<link name="l"/>'
 LINK_CHILDREN = ('visual', 'collision', 'sensor', 'light', 'particle_emitter', 'projector')
 KINDS_IN_MODELS = [kind for kind in Kind if 'model' in kind.parents]
+JOINTS = '<plugin filename="gz-sim-joint-state-publisher-system" name=""/>'
 TWO_LINKS = '<link name="a"/><link name="b"/>'
 
 
@@ -35,6 +36,16 @@ def link_with(content):
 
 def joint(content, name='j', joint_type='fixed'):
     return f'<joint name="{name}" type="{joint_type}">{content}</joint>'
+
+
+def model(name, content):
+    """Return a model with the link ``l``, for a world."""
+    return f'<model name="{name}">{LINK}{content}</model>'
+
+
+def plugin(system, parameters=''):
+    """Return a plugin of Gazebo."""
+    return f'<plugin filename="f" name="gz::sim::systems::{system}">{parameters}</plugin>'
 
 
 def fixed_joint(name, parent, child, pose=''):

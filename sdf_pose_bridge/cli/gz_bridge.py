@@ -15,14 +15,15 @@ from sdf_pose_bridge.cli.arguments import add_file_arguments, add_output_argumen
 from sdf_pose_bridge.cli.loading import doubts_about_frames, scene_of, STANDARD_INPUT
 from sdf_pose_bridge.cli.printing import CommandError, print_problems, write_text
 from sdf_pose_bridge.errors import SdfError, SdfWarning
+from sdf_pose_bridge.export.gazebo_bridge import node_parameters
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.nearest_names import hint_from_names
 from sdf_pose_bridge.printed_text import printable
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.gazebo_topics import GROUPS, ROS_TYPES
+from sdf_pose_bridge.tf.bridged_topics import bridged_topics, BridgedTopic
 from sdf_pose_bridge.tf.frame_ids import FrameNames
-from sdf_pose_bridge.tf.gazebo_bridge import bridged_topics, BridgedTopic, node_parameters
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 HELP = 'write the configuration of ros_gz_bridge for a file'

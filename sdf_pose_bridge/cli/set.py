@@ -19,11 +19,11 @@ from sdf_pose_bridge.cli.given_poses import (
 )
 from sdf_pose_bridge.cli.loading import pose_lookup, scene_from_file, scene_of, STANDARD_INPUT
 from sdf_pose_bridge.cli.printing import CommandError, print_message
+from sdf_pose_bridge.export.pose_setting import are_close, pose_change
 from sdf_pose_bridge.geometry.pose_texts import FORMATS
 from sdf_pose_bridge.geometry.poses import Pose, pose_product
 from sdf_pose_bridge.names import scoped_name
 from sdf_pose_bridge.printed_text import listed, printable
-from sdf_pose_bridge.scene.pose_setting import are_close, pose_change
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.comparison import names_of_moved
 

@@ -15,7 +15,7 @@ from sdf_pose_bridge.cli.arguments import (
 )
 from sdf_pose_bridge.cli.loading import scene_of
 from sdf_pose_bridge.cli.printing import print_problems, write_text
-from sdf_pose_bridge.tf.urdf_text import urdf_from_scene
+from sdf_pose_bridge.export.urdf_text import urdf_from_scene
 
 HELP = 'write a model as URDF, whose links are the frames of TF'
 DESCRIPTION = (

@@ -34,6 +34,7 @@ from sdf_pose_bridge.cli.loading import scene_from_file, STANDARD_INPUT
 from sdf_pose_bridge.cli.printing import CommandError, print_problems
 from sdf_pose_bridge.cli.viewer import LIBRARIES, UntestedViserError
 from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.export.pose_setting import pose_change
 from sdf_pose_bridge.file_change import replace_file
 from sdf_pose_bridge.file_watcher import FileWatcher
 from sdf_pose_bridge.geometry.units import Units
@@ -41,7 +42,6 @@ from sdf_pose_bridge.limited_process import LimitedProcess
 from sdf_pose_bridge.problems import by_message, errors_of_process
 from sdf_pose_bridge.process_limits import FOR_FILES
 from sdf_pose_bridge.scene.loading import load_text
-from sdf_pose_bridge.scene.pose_setting import pose_change
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 

@@ -14,10 +14,10 @@ import datetime
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 
+from sdf_pose_bridge.export.loaded_scene import LoadedScene
 from sdf_pose_bridge.ros.log_lines import count_in_words, line_from_text
 from sdf_pose_bridge.ros.publishers import SwitchedPublisher, Topic
 from sdf_pose_bridge.ros.state_report import StateReport
-from sdf_pose_bridge.tf.loaded_scene import LoadedScene
 
 PERIOD_S = 2.0
 """

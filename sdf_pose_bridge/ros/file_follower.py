@@ -8,8 +8,8 @@ from collections.abc import Iterable
 import math
 import time
 
+from sdf_pose_bridge.export.loaded_scene import is_temporary, LoadedScene
 from sdf_pose_bridge.file_watcher import FileWatcher
-from sdf_pose_bridge.tf.loaded_scene import is_temporary, LoadedScene
 
 RETRY_PERIOD_S = 1.0
 """Seconds until the files are read again after a temporary failure."""

@@ -21,6 +21,8 @@ from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
 from sdf_pose_bridge.errors import AddressError, SdfError
+from sdf_pose_bridge.export.loaded_scene import LoadedScene, LoadRequest
+from sdf_pose_bridge.export.loading import files_behind_error
 from sdf_pose_bridge.problems import by_message
 from sdf_pose_bridge.ros.background import Periodic, result_from_executor, Worker
 from sdf_pose_bridge.ros.diagnostics import Diagnostics, PERIOD_S
@@ -44,8 +46,6 @@ from sdf_pose_bridge.ros.scene_reader import loaded_scene, SceneReader
 from sdf_pose_bridge.ros.services import add_services, SERVICE_QOS, set_pose
 from sdf_pose_bridge.ros.state_report import StateReport
 from sdf_pose_bridge.ros.topic_names import check_number_of_topics, state_topics_from_settings
-from sdf_pose_bridge.tf.loaded_scene import LoadedScene, LoadRequest
-from sdf_pose_bridge.tf.loading import files_behind_error
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge_interfaces.srv import SetPose
 

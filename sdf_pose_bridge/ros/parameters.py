@@ -17,13 +17,13 @@ from typing import Any, Generic, TypeVar
 
 from rclpy.parameter import Parameter
 
+from sdf_pose_bridge.export.loaded_scene import DescriptionFormat, LoadRequest
 from sdf_pose_bridge.ros import setting_rules as rules
 from sdf_pose_bridge.ros.cdr import POSE_TYPES
 from sdf_pose_bridge.sdformat.limits import MissingInclude
 from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.joint_positions import UnreportedJoints
-from sdf_pose_bridge.tf.loaded_scene import DescriptionFormat, LoadRequest
 from sdf_pose_bridge.tf.tree import DEFAULT_KINDS, TfOptions
 
 Value = str | bool | float | list[str]

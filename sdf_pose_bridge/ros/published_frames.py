@@ -20,6 +20,7 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from tf2_msgs.msg import TFMessage
 
+from sdf_pose_bridge.export.loaded_scene import LoadedScene
 from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.ros.background import result_from_executor
 from sdf_pose_bridge.ros.cdr import Rows, StampedRecords
@@ -29,7 +30,6 @@ from sdf_pose_bridge.ros.publishers import Publishers, Topic
 from sdf_pose_bridge.ros.topic_names import pose_topics_from_patterns
 from sdf_pose_bridge.tf.joint_motion import MovingFrames, NO_DOF
 from sdf_pose_bridge.tf.joint_positions import JointPositions, NEVER
-from sdf_pose_bridge.tf.loaded_scene import LoadedScene
 from sdf_pose_bridge.tf.tree import TfTree
 
 TF_STATIC = Topic('/tf_static', TFMessage, is_overridable=True)

@@ -8,23 +8,23 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TypeVar
 
+from sdf_pose_bridge.export.loaded_scene import LoadedScene, LoadRequest
 from sdf_pose_bridge.limited_process import Call, LimitedProcess
 from sdf_pose_bridge.problems import errors_of_process
 from sdf_pose_bridge.process_limits import FOR_FILES
-from sdf_pose_bridge.tf.loaded_scene import LoadedScene, LoadRequest
 
 _Result = TypeVar('_Result')
 
 
 def _prepare() -> None:
     """Import what reads files, while the node itself imports ROS."""
-    import sdf_pose_bridge.sdformat.include.expansion
-    import sdf_pose_bridge.tf.frame_change  # noqa: F401
+    import sdf_pose_bridge.export.frame_change
+    import sdf_pose_bridge.sdformat.include.expansion  # noqa: F401
 
 
 def loaded_scene(request: LoadRequest) -> LoadedScene:
-    """Do the same as ``tf.loading.loaded_scene_from_request``, which the node need not import."""
-    from sdf_pose_bridge.tf.loading import loaded_scene_from_request
+    """Do what ``export.loading.loaded_scene_from_request`` does; the node need not import it."""
+    from sdf_pose_bridge.export.loading import loaded_scene_from_request
     return loaded_scene_from_request(request)
 
 

@@ -18,8 +18,8 @@ from std_msgs.msg import ColorRGBA, Header
 from visualization_msgs.msg import Marker, MarkerArray
 
 from sdf_pose_bridge.errors import SdfWarning
-from sdf_pose_bridge.tf.loaded_scene import LoadRequest
-from sdf_pose_bridge.tf.visual_markers import markers_from_text, VisualMarker
+from sdf_pose_bridge.export.loaded_scene import LoadRequest
+from sdf_pose_bridge.export.visual_markers import markers_from_text, VisualMarker
 
 
 def serialized_markers_from_text(
@@ -30,7 +30,7 @@ def serialized_markers_from_text(
 
     :param root_frame: frame id of the root.
     :return: the serialized message, with warnings; otherwise as
-        :func:`~sdf_pose_bridge.tf.visual_markers.markers_from_text`.
+        :func:`~sdf_pose_bridge.export.visual_markers.markers_from_text`.
     """
     found = markers_from_text(text, path, request, fingerprint)
     if found is None:

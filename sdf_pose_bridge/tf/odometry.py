@@ -18,7 +18,7 @@ from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.poses import EULER_RPY, pose_from_text
-from sdf_pose_bridge.tf.gazebo_bridge import bridged_topics
+from sdf_pose_bridge.tf.bridged_topics import bridged_topics
 from sdf_pose_bridge.tf.joint_motion import JointMotion
 
 

@@ -9,7 +9,7 @@ import tempfile
 
 from differential.scene_builder import SCENE, SceneFiles
 import sdf_pose_bridge
-from sdf_pose_bridge.scene.pose_setting import pose_change
+from sdf_pose_bridge.export.pose_setting import pose_change
 
 
 def with_pose_set(scene, dice):

@@ -5,10 +5,10 @@
 from diagnostic_msgs.msg import DiagnosticStatus
 import pytest
 
+from sdf_pose_bridge.export.loading import loaded_scene_from_request
 from sdf_pose_bridge.ros.diagnostics import Diagnostics, status_from_scene
 from sdf_pose_bridge.ros.given_parameters import settings_from_node
 from sdf_pose_bridge.ros.state_report import StateReport
-from sdf_pose_bridge.tf.loading import loaded_scene_from_request
 
 NOTHING_MISSING = StateReport()
 LOADED_AT_NS = 1767323045_678900000

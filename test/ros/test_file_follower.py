@@ -5,10 +5,10 @@
 import pytest
 
 from sdf_pose_bridge.errors import Place, SdfError, TemporaryReadError
+from sdf_pose_bridge.export.loaded_scene import LoadRequest
+from sdf_pose_bridge.export.loading import files_behind_error, loaded_scene_from_request
 from sdf_pose_bridge.ros import file_follower
 from sdf_pose_bridge.ros.file_follower import FileFollower
-from sdf_pose_bridge.tf.loaded_scene import LoadRequest
-from sdf_pose_bridge.tf.loading import files_behind_error, loaded_scene_from_request
 
 GOOD = '<sdf version="1.10"><model name="m"><link name="l"/></model></sdf>'
 BUSY, BROKEN = TemporaryReadError('busy', Place('a.sdf')), SdfError('broken', Place('a.sdf'))

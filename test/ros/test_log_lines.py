@@ -14,6 +14,8 @@ from tf_checks import tree_of
 import urdf_texts as urdf
 
 from sdf_pose_bridge.errors import LoadError, ParsingError, Place, SdfError
+from sdf_pose_bridge.export.loaded_scene import LoadRequest
+from sdf_pose_bridge.export.loading import loaded_scene_from_request
 from sdf_pose_bridge.problems import MOST_PROBLEMS
 from sdf_pose_bridge.ros import log_lines
 from sdf_pose_bridge.ros.log_lines import (
@@ -39,8 +41,6 @@ from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.joint_positions import JointPositions
-from sdf_pose_bridge.tf.loaded_scene import LoadRequest
-from sdf_pose_bridge.tf.loading import loaded_scene_from_request
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 AXIS = '<axis><xyz>0 0 1</xyz>{}</axis>'

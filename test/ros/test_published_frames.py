@@ -19,14 +19,14 @@ from tf2_msgs.msg import TFMessage
 from tf_checks import tree_of
 
 from sdf_pose_bridge import load_text
+from sdf_pose_bridge.export.loaded_scene import LoadRequest
+from sdf_pose_bridge.export.loading import loaded_scene_from_request
 from sdf_pose_bridge.ros.given_parameters import settings_from_values
 from sdf_pose_bridge.ros.joint_states import JointStates
 from sdf_pose_bridge.ros.published_frames import frames_from_scene, PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.ros.topic_names import StateTopics
 from sdf_pose_bridge.tf.joint_positions import JointPositions, UnreportedJoints
-from sdf_pose_bridge.tf.loaded_scene import LoadRequest
-from sdf_pose_bridge.tf.loading import loaded_scene_from_request
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 

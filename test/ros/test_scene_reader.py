@@ -15,11 +15,11 @@ from sdf_pose_bridge.errors import (
     SdfError,
     TemporaryReadError,
 )
+from sdf_pose_bridge.export.frame_change import write_frame_change
+from sdf_pose_bridge.export.loaded_scene import fingerprint_of_scene, is_temporary, LoadRequest
+from sdf_pose_bridge.export.visual_markers import markers_from_text
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.ros.scene_reader import loaded_scene
-from sdf_pose_bridge.tf.frame_change import write_frame_change
-from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, is_temporary, LoadRequest
-from sdf_pose_bridge.tf.visual_markers import markers_from_text
 
 CRASH = """import faulthandler, signal
 faulthandler.disable()

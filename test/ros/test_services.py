@@ -21,6 +21,8 @@ from sdf_texts import joint, model_file, posed, world_file
 
 from sdf_pose_bridge import load
 from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.export.loaded_scene import LoadRequest
+from sdf_pose_bridge.export.loading import loaded_scene_from_request
 from sdf_pose_bridge.ros import services
 from sdf_pose_bridge.ros.given_parameters import settings_from_node
 from sdf_pose_bridge.ros.services import (
@@ -31,8 +33,6 @@ from sdf_pose_bridge.ros.services import (
     set_pose,
 )
 from sdf_pose_bridge.scene.loading import load_text
-from sdf_pose_bridge.tf.loaded_scene import LoadRequest
-from sdf_pose_bridge.tf.loading import loaded_scene_from_request
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge_interfaces.srv import ConvertPoses, ConvertRotation, LookupPose, SetPose

@@ -17,12 +17,12 @@ from sdf_texts import world_file
 from simulation_interfaces.msg import EntityState, Result
 from simulation_interfaces.srv import GetEntitiesStates
 
+from sdf_pose_bridge.export.loaded_scene import LoadRequest
+from sdf_pose_bridge.export.loading import loaded_scene_from_request
 from sdf_pose_bridge.ros import simulator as module
 from sdf_pose_bridge.ros.given_parameters import settings_from_values
 from sdf_pose_bridge.ros.log_lines import WARNING_PERIOD_S
 from sdf_pose_bridge.ros.simulator import Simulator
-from sdf_pose_bridge.tf.loaded_scene import LoadRequest
-from sdf_pose_bridge.tf.loading import loaded_scene_from_request
 from sdf_pose_bridge.tf.tree import TfOptions
 
 SERVICE = '/sim/get_entities_states'

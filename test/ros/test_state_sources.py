@@ -11,11 +11,11 @@ from rclpy.context import Context
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from sdf_texts import world_file
 
+from sdf_pose_bridge.export.loaded_scene import LoadRequest
+from sdf_pose_bridge.export.loading import loaded_scene_from_request
 from sdf_pose_bridge.ros.given_parameters import settings_from_values
 from sdf_pose_bridge.ros.state_sources import StateSources
 from sdf_pose_bridge.ros.topic_names import StateTopics
-from sdf_pose_bridge.tf.loaded_scene import LoadRequest
-from sdf_pose_bridge.tf.loading import loaded_scene_from_request
 from sdf_pose_bridge.tf.tree import TfOptions
 
 SETTINGS = settings_from_values({'sdf_file': 'a.sdf'})

@@ -14,6 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from sdf_texts import joint, model_file, world_file
 
+from sdf_pose_bridge.export.loading import loaded_scene_from_request
 from sdf_pose_bridge.ros import topic_names
 from sdf_pose_bridge.ros.given_parameters import settings_from_values
 from sdf_pose_bridge.ros.parameters import DECLARATIONS, SettingsError
@@ -25,7 +26,6 @@ from sdf_pose_bridge.ros.topic_names import (
     topics_from_patterns,
 )
 from sdf_pose_bridge.tf.frame_ids import LONGEST_NAME, SHORTEST_LIMIT, topic_name_from_frame_id
-from sdf_pose_bridge.tf.loading import loaded_scene_from_request
 
 NODE = '/sdf_pose_bridge'
 

@@ -7,9 +7,9 @@ import pytest
 from rclpy.serialization import deserialize_message, serialize_message
 from visualization_msgs.msg import Marker, MarkerArray
 
+from sdf_pose_bridge.export.visual_markers import VisualMarker
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.ros.visual_messages import message_from_markers
-from sdf_pose_bridge.tf.visual_markers import VisualMarker
 
 POSE = Pose(1.0, 2.0, 3.0, 0.0, 0.0, 1.0, 0.0)
 BLUE = (0.0, 0.0, 1.0, 0.5)

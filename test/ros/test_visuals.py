@@ -9,9 +9,9 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from sdf_texts import world_file, write_files
 from visualization_msgs.msg import Marker, MarkerArray
 
+from sdf_pose_bridge.export.loaded_scene import LoadRequest
+from sdf_pose_bridge.export.loading import loaded_scene_from_request
 from sdf_pose_bridge.ros.visuals import VisualPublisher
-from sdf_pose_bridge.tf.loaded_scene import LoadRequest
-from sdf_pose_bridge.tf.loading import loaded_scene_from_request
 
 SDF = """<sdf version="1.10"><model name="m"><link name="l">
 <visual name="v"><geometry><{shape}/></geometry></visual></link></model></sdf>"""

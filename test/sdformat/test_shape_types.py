@@ -8,10 +8,10 @@ import pytest
 from sdf_texts import link_with
 
 from sdf_pose_bridge import load_text
+from sdf_pose_bridge.export.visual_markers import visual_markers_from_scene
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.shape_types import SHAPE_TYPES
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge.tf.visual_markers import visual_markers_from_scene
 
 SIZES_M = (0.7, 1.1, 1.3)
 WITH_SURFACE = [name for name, each in SHAPE_TYPES.items() if each.surface is not None]

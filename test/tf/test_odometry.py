@@ -3,7 +3,7 @@
 """Frames of odometry in a file."""
 
 import pytest
-from sdf_texts import joint, model_file, world_file, write_files
+from sdf_texts import joint, model_file, plugin, world_file, write_files
 
 from sdf_pose_bridge import load, load_text
 from sdf_pose_bridge.geometry.poses import Pose, pose_inverse, pose_product
@@ -13,10 +13,6 @@ from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 START = Pose(1.0, 2.0, 0.5)
 CART = '<model name="cart"><pose>1 2 0.5 0 0 0</pose><link name="deck"/>{}</model>'
 HALF_TURN = Pose(0.5, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
-
-
-def plugin(system, parameters=''):
-    return f'<plugin filename="f" name="gz::sim::systems::{system}">{parameters}</plugin>'
 
 
 def tree_of(content, text=None, model_name=''):

@@ -14,13 +14,13 @@ import numpy as np
 
 from sdf_pose_bridge import Pose, Scene
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
+from sdf_pose_bridge.export.pose_setting import place_of_pose
 from sdf_pose_bridge.geometry.formats import converted_poses
 from sdf_pose_bridge.geometry.pose_texts import TEXT_FORMATS
 from sdf_pose_bridge.geometry.poses import relative_pose
 from sdf_pose_bridge.geometry.units import POSE_LABELS, Units
 from sdf_pose_bridge.names import is_name_of_proxy, SEPARATOR
 from sdf_pose_bridge.printed_text import printable, quoted_names
-from sdf_pose_bridge.scene.pose_setting import place_of_pose
 from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT
 
 MOST_ROWS = 300

@@ -16,6 +16,7 @@ from sdf_pose_bridge import Pose, Scene, scene_at_positions, SdfError
 from sdf_pose_bridge.cli.viewer.frame_texts import escaped, html_of_difference, html_of_lines
 from sdf_pose_bridge.cli.viewer.server import Events
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
+from sdf_pose_bridge.export.pose_setting import Measure, PoseChange
 from sdf_pose_bridge.geometry.formats import converted_poses, POSE_FORMATS, PoseFormatError
 from sdf_pose_bridge.geometry.pose_texts import (
     number_from_text,
@@ -26,10 +27,9 @@ from sdf_pose_bridge.geometry.pose_texts import (
 from sdf_pose_bridge.geometry.poses import pose_product, relative_pose
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
 from sdf_pose_bridge.geometry.units import POSE_LABELS, Units
-from sdf_pose_bridge.scene.pose_setting import Measure, PoseChange
 
 FindChange: TypeAlias = Callable[[Scene, int, Pose, Measure], PoseChange]
-"""Finds a change as :func:`~sdf_pose_bridge.scene.pose_setting.pose_change` does."""
+"""Finds a change as :func:`~sdf_pose_bridge.export.pose_setting.pose_change` does."""
 
 _SEVERAL = re.compile(r'\s|[\[({<:=]|[,;].*[,;]', re.DOTALL)
 """A text of one number has none of these, but for a comma of thousands."""

@@ -16,10 +16,10 @@ from sdf_pose_bridge import load
 from sdf_pose_bridge.cli.viewer.page import Page, Pages, SelectedFrame
 from sdf_pose_bridge.cli.viewer.server import Events
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
+from sdf_pose_bridge.export.pose_setting import PoseChange
 from sdf_pose_bridge.file_change import FileChange
 from sdf_pose_bridge.geometry.units import DEGREES, Units
 from sdf_pose_bridge.scene.loading import load_text
-from sdf_pose_bridge.scene.pose_setting import PoseChange
 from sdf_pose_bridge.tf.tree import TfOptions
 
 TEXT = """<sdf version="1.11"><model name="m"><link name="l"/></model></sdf>"""

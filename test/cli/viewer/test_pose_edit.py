@@ -14,11 +14,11 @@ from sdf_pose_bridge.cli.viewer.pose_edit import PoseEdit
 from sdf_pose_bridge.cli.viewer.server import Events
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.errors import ElementInvalidError
+from sdf_pose_bridge.export.pose_setting import PoseChange
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy, rpy_from_quaternion
 from sdf_pose_bridge.geometry.units import DEGREES, MILLIMETRES, Units
 from sdf_pose_bridge.scene.loading import load_text
-from sdf_pose_bridge.scene.pose_setting import PoseChange
 from sdf_pose_bridge.tf.tree import TfOptions
 
 TEXT = """<sdf version="1.11"><model name="m"><link name="l"/>

@@ -12,6 +12,9 @@ import time
 from lxml import etree
 
 from sdf_pose_bridge.errors import AddressError, Place, SdfError, SdfWarning, UriLookupError
+from sdf_pose_bridge.export.loaded_scene import DescriptionFormat, LoadedScene, LoadRequest
+from sdf_pose_bridge.export.urdf_robot import robot_from_scene
+from sdf_pose_bridge.export.urdf_text import UrdfWriter
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.include.manifests import model_file_from_directory, ModelFile
@@ -19,11 +22,8 @@ from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file, xml_from_bytes
 from sdf_pose_bridge.tf.joint_positions import JointPositions
-from sdf_pose_bridge.tf.loaded_scene import DescriptionFormat, LoadedScene, LoadRequest
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge.tf.urdf_robot import robot_from_scene
-from sdf_pose_bridge.tf.urdf_text import UrdfWriter
 
 
 def loaded_scene_from_request(

@@ -9,9 +9,9 @@ import pytest
 from sdf_texts import joint, model_file, world_file
 
 from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.export.loaded_scene import DescriptionFormat, LoadRequest
+from sdf_pose_bridge.export.loading import loaded_scene_from_request, unicode_text
 from sdf_pose_bridge.tf.frame_ids import FrameNaming
-from sdf_pose_bridge.tf.loaded_scene import DescriptionFormat, LoadRequest
-from sdf_pose_bridge.tf.loading import loaded_scene_from_request, unicode_text
 from sdf_pose_bridge.tf.tree import TfOptions
 
 GOOD = '<model name="m"><link name="l"><pose>1 0 0 0 0 0</pose></link><frame name="f"/></model>'

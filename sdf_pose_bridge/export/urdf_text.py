@@ -12,6 +12,7 @@ from typing import NamedTuple, TypeAlias
 from lxml import etree
 
 from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.export.urdf_robot import NO_LIMIT, robot_from_scene, UrdfJoint, UrdfRobot
 from sdf_pose_bridge.geometry.poses import Pose, pose_product
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
 from sdf_pose_bridge.printed_text import printable, shortened
@@ -25,7 +26,6 @@ from sdf_pose_bridge.sdformat.shapes import Shape
 from sdf_pose_bridge.sdformat.urdf.values import text_from_numbers
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.tree import DEFAULT_KINDS, TfOptions
-from sdf_pose_bridge.tf.urdf_robot import NO_LIMIT, robot_from_scene, UrdfJoint, UrdfRobot
 
 _DIGITS = 15
 """Number of digits, and of decimals of poses, so that rounding errors are not written."""

@@ -7,16 +7,16 @@ from sdf_texts import link_with, model_file, world_file
 from tf_checks import model
 
 from sdf_pose_bridge import load_text
+from sdf_pose_bridge.export import visual_markers
+from sdf_pose_bridge.export.loaded_scene import fingerprint_of_scene, LoadRequest
+from sdf_pose_bridge.export.loading import loaded_scene_from_request
+from sdf_pose_bridge.export.visual_markers import markers_from_text, visual_markers_from_scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.limits import MissingInclude
-from sdf_pose_bridge.tf import visual_markers
 from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.frame_ids import FrameNames
-from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadRequest
-from sdf_pose_bridge.tf.loading import loaded_scene_from_request
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
-from sdf_pose_bridge.tf.visual_markers import markers_from_text, visual_markers_from_scene
 
 BOX = '<box><size>1 2 3</size></box>'
 CAPSULE = '<capsule><radius>1</radius><length>4</length></capsule>'

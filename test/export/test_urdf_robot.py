@@ -17,14 +17,14 @@ from random_scenes import random_scenes
 
 from sdf_pose_bridge import Kind, load_text, scene_at_positions, SdfError
 from sdf_pose_bridge.errors import UrdfNotMadeError
+from sdf_pose_bridge.export.urdf_robot import robot_from_scene
+from sdf_pose_bridge.export.urdf_text import urdf_from_scene
 from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS
 from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.joint_positions import JointPositions, UnreportedJoints
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
-from sdf_pose_bridge.tf.urdf_robot import robot_from_scene
-from sdf_pose_bridge.tf.urdf_text import urdf_from_scene
 
 MODEL = f'<model name="{{}}">{LINK}</model>'
 TWO_LINKS = '<link name="a"/><link name="b"><pose>1 0 0 0 0 0</pose></link>'

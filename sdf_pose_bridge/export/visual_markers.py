@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sdf_pose_bridge.errors import SdfError, SdfWarning
+from sdf_pose_bridge.export.loaded_scene import fingerprint_of_scene, LoadRequest
 from sdf_pose_bridge.geometry.poses import Pose, pose_product
 from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.printed_text import shortened
@@ -20,7 +21,6 @@ from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import resource_finder, ResourceFinder
 from sdf_pose_bridge.sdformat.shape_types import Primitive
 from sdf_pose_bridge.sdformat.shapes import Shape
-from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadRequest
 from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.tree import elements_in_model, tf_tree_from_scene, TfTree
 

@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Find the topics of plugins and sensors in a file, their names in ROS, and parameters of the node.
+Find the topics of plugins and sensors in a file, their names in ROS, and the models they place.
 
 A topic is called ``/<model>/<name>`` in ROS, with the model as in topics of the node. Topics of a
 world, and of several plugins or sensors, have the same name as in Gazebo.
@@ -20,7 +20,7 @@ from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.names import SEPARATOR, unused_name
 from sdf_pose_bridge.printed_text import listed, quoted_names
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.gazebo_topics import GazeboTopic, GROUPS, is_true, topics_of
+from sdf_pose_bridge.sdformat.gazebo_topics import GazeboTopic, is_true, topics_of
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.frame_ids import topic_name_from_frame_id
 from sdf_pose_bridge.tf.parents import tf_parents_from_scene
@@ -115,34 +115,6 @@ def _doubt(name: str, owners: Sequence[Owner], scene: Scene) -> SdfWarning | Non
     return SdfWarning('WARNING', (
         f'the topic {name} belongs to {whose}, so it has messages of all; give each a topic of '
         f'its own in the file{cure}'), scene.place(element))
-
-
-def node_parameters(
-    topics: Sequence[BridgedTopic], scene: Scene, world: str = '',
-) -> dict[str, object]:
-    """Return the parameters with which the node follows topics, found with the same arguments."""
-    joints = {each.pattern for each in topics if each.topic.group == 'joints'}
-    sources = sorted(
-        (each for each in topics if each.places_model),
-        # Before Harmonic 8.10, PosePublisher needs this option for the pose of its own model, too.
-        key=lambda each: (
-            bool(each.doubt), each.topic.is_of_wheels, each.topic.group == 'poses' and not is_true(
-                each.owners[0].values, 'publish_nested_model_pose'),
-            GROUPS.index(each.topic.group)))
-    followed = {each.owners[0].free_model: each for each in reversed(sources)}
-    # A pattern must not name the second source of another model.
-    others = {each.pattern for each in sources
-              if each is not followed[each.owners[0].free_model]}
-    poses = {each.ros_name if each.pattern in others else each.pattern
-             for each in followed.values()}
-    has_poses = any(each.topic.group == 'poses' for each in followed.values())
-    return {
-        'use_sim_time': True,
-        'model_name': '' if scene.world_names else scene.names[1],
-        'use_joint_states': bool(joints),
-        'joint_states_topics': sorted(joints),
-        'model_pose_topics': sorted(poses),
-        'model_pose_frames': [world] if world and has_poses else []}
 
 
 def _ros_name(name: str) -> str:

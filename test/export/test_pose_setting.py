@@ -11,8 +11,8 @@ import urdf_texts
 
 from sdf_pose_bridge import load, Pose, Scene
 from sdf_pose_bridge.errors import PoseNotSetError
+from sdf_pose_bridge.export.pose_setting import pose_change
 from sdf_pose_bridge.geometry.poses import canonical_relative_pose
-from sdf_pose_bridge.scene.pose_setting import pose_change
 
 ASKED = Pose(0.5, -1.0, 2.0, 0.5, 0.5, 0.5, 0.5)
 MODEL = model_file(posed('link', 'a', '1 0 0 0 0 0') + posed('frame', 'f', '0 1 0 0 0 1', 'a'))
