@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
+from functools import partial
 import sys
 import threading
 
@@ -13,11 +13,11 @@ from sdf_pose_bridge.cli.printing import print_problems
 from sdf_pose_bridge.errors import SdfError, SdfWarning
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.printed_text import printable
-from sdf_pose_bridge.scene.loading import load_text
+from sdf_pose_bridge.scene.loading import load
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
-from sdf_pose_bridge.tf.lookup import PoseLookup
+from sdf_pose_bridge.tf.lookup import lookup_from_scene
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 STANDARD_INPUT = '-'
@@ -25,15 +25,13 @@ STANDARD_INPUT = '-'
 
 
 def scene_from_file(
-    path: str, options: argparse.Namespace, texts: Mapping[str, bytes] | None = None, *,
-    shapes: bool = False, plugins: bool = False,
+    path: str, options: argparse.Namespace, *, shapes: bool = False, plugins: bool = False,
 ) -> Scene:
     """
     Load a file, or a pipe such as the shell's ``<(command)``.
 
     :param path: path of the file; ``-`` for the standard input, beside which includes are searched
         in the working directory.
-    :param texts: texts to read instead of some files, by their paths.
     :raises SdfError: if the file is not valid.
     """
     is_input = path == STANDARD_INPUT
@@ -44,12 +42,16 @@ def scene_from_file(
         timer.start()
     try:
         text = bytes_from_file('/dev/stdin' if is_input else path, Usage(), allows_pipe=True)
-        return load_text(
-            text, '<stdin>' if is_input else path,
-            resource_paths=options.resource_paths, shapes=shapes, plugins=plugins, texts=texts,
-            on_missing_include='skip' if options.skip_missing else 'error')
+        path = '<stdin>' if is_input else path
+        return loader(path, options)(shapes=shapes, plugins=plugins, texts={path: text})
     finally:
         timer.cancel()
+
+
+def loader(path: str, options: argparse.Namespace) -> partial[Scene]:
+    """Return a function that loads a file as :func:`scene_from_file`."""
+    return partial(load, path, resource_paths=options.resource_paths,
+                   on_missing_include='skip' if options.skip_missing else 'error')
 
 
 def load_file(
@@ -85,16 +87,6 @@ def doubts_about_frames(
             for each in error.errors)
 
 
-def pose_lookup(scene: Scene) -> PoseLookup:
-    """Return a lookup by the names of SDF, and by those of TF if these are unique."""
-    try:
-        tree = tf_tree_from_scene(scene)
-    except SdfError:
-        # Frames that would share an id keep their names in SDF.
-        tree = tf_tree_from_scene(scene, TfOptions(kinds=frozenset()))
-    return PoseLookup(scene, tree)
-
-
 def sdf_name(scene: Scene, name: str) -> str:
     """
     Return the name in SDF of a frame; the given one of an optical frame, which is not in SDF.
@@ -103,7 +95,7 @@ def sdf_name(scene: Scene, name: str) -> str:
     """
     if not name or scene.has(name):
         return name
-    lookup = pose_lookup(scene)
+    lookup = lookup_from_scene(scene)
     if not lookup.is_frame_id(name) and scene.elements_called(name):
         return name
     element, in_element = lookup.element(name)

@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import argparse
-from functools import partial
 import re
 import sys
 
@@ -17,15 +16,15 @@ from sdf_pose_bridge.cli.given_poses import (
     PoseReader,
     poses_from_rows,
 )
-from sdf_pose_bridge.cli.loading import pose_lookup, scene_from_file, scene_of, STANDARD_INPUT
+from sdf_pose_bridge.cli.loading import loader, scene_of, STANDARD_INPUT
 from sdf_pose_bridge.cli.printing import CommandError, print_message
 from sdf_pose_bridge.export.pose_setting import are_close, pose_change
 from sdf_pose_bridge.geometry.pose_texts import FORMATS
 from sdf_pose_bridge.geometry.poses import Pose, pose_product
 from sdf_pose_bridge.names import scoped_name
 from sdf_pose_bridge.printed_text import listed, printable
-from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.comparison import names_of_moved
+from sdf_pose_bridge.tf.lookup import lookup_from_scene
 
 HELP = 'write a measured pose into a file'
 DESCRIPTION = (
@@ -89,11 +88,7 @@ def run(options: argparse.Namespace) -> int:
         msg = f'{doubt} ({keep} writes them as they are)'
         raise CommandError(msg)
     scene = scene_of(options.files[0], options)
-
-    def measured(scene: Scene, element: int) -> Pose:
-        return pose_lookup(scene).pose_of_element(element, options.relative_to)
-
-    lookup = pose_lookup(scene)
+    lookup = lookup_from_scene(scene)
     element, _ = lookup.element(options.frame)
     own_name = scene.names[element]
     part = options.by or options.frame
@@ -103,10 +98,11 @@ def run(options: argparse.Namespace) -> int:
     asked = Pose(*(given if source.position else current)[:3],
                  *(current if is_position else given)[3:])
     change = pose_change(
-        scene, element, pose_product(asked, lookup.pose_of_element(element, part)), measured,
-        partial(scene_from_file, options.files[0], options), all_instances=options.all_instances)
+        scene, element, pose_product(asked, lookup.pose_of_element(element, part)),
+        lookup_from_scene, loader(options.files[0], options), relative_to=options.relative_to,
+        all_instances=options.all_instances)
     if options.by and not are_close(
-            pose_lookup(change.scene).pose(part, options.relative_to).pose, asked):
+            lookup_from_scene(change.scene).pose(part, options.relative_to).pose, asked):
         msg = f'"{part}" does not move with "{printable(own_name)}"'
         raise CommandError(msg)
     moved = [name for name in names_of_moved(scene, change.scene) if name != own_name]

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 import contextlib
 from functools import partial
 import importlib
@@ -30,7 +30,7 @@ from sdf_pose_bridge.cli.arguments import (
     argument_type,
     tf_options_from_arguments,
 )
-from sdf_pose_bridge.cli.loading import scene_from_file, STANDARD_INPUT
+from sdf_pose_bridge.cli.loading import loader, scene_from_file, STANDARD_INPUT
 from sdf_pose_bridge.cli.printing import CommandError, print_problems
 from sdf_pose_bridge.cli.viewer import LIBRARIES, UntestedViserError
 from sdf_pose_bridge.errors import SdfError
@@ -98,22 +98,25 @@ def run(options: argparse.Namespace) -> int:
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     # It is made before the server starts threads.
     with contextlib.closing(LimitedProcess()) as process:
-        load, read_since_ns = partial(_scene, process, options), time.time_ns()
+        (path,), read_since_ns = options.files, time.time_ns()
+        call = partial(_result_of_process, process, path)
+        load = partial(call, partial(scene_from_file, shapes=True), path, options)
         errors: Sequence[SdfError] = ()
         try:
             scene = load()
         except SdfError as error:
             # The page waits until the file is mended.
-            if options.output is not None or options.model or not Path(options.files[0]).is_file():
+            if options.output is not None or options.model or not Path(path).is_file():
                 raise
-            scene, errors = load_text(_EMPTY, options.files[0]), error.errors
+            scene, errors = load_text(_EMPTY, path), error.errors
         print_problems(errors, scene.warnings, sys.stderr)
         meshes = viewer.MeshReader(resource_finder(options.resource_paths), process)
         try:
             pages = viewer.Pages(
                 scene, tf_options_from_arguments(options), 0 if options.output else options.port,
                 Units(options.length_unit, options.angle_unit), meshes,
-                partial(pose_change, load=load) if options.edit else None)
+                partial(call, partial(pose_change, load=partial(
+                    loader(path, options), shapes=True))) if options.edit else None)
         except UntestedViserError as error:
             raise CommandError(str(error)) from error
         with contextlib.closing(pages):
@@ -128,7 +131,7 @@ def run(options: argparse.Namespace) -> int:
             watcher = FileWatcher()
             # The standard input cannot be read again.
             watcher.watch(
-                () if options.files[0] == STANDARD_INPUT else {
+                () if path == STANDARD_INPUT else {
                     *scene.files, *(str(error.place.file) for error in errors if error.place)},
                 read_since_ns)
             while True:
@@ -207,15 +210,11 @@ def _write(html: str, path: Path, inputs: Iterable[str]) -> None:
     replace_file(str(path), None, content, inputs)
 
 
-def _scene(
-    process: LimitedProcess, options: argparse.Namespace,
-    texts: Mapping[str, bytes] | None = None,
-) -> Scene:
-    """Load the file in another process, with other texts of some files, by their paths."""
-    (path,) = options.files
+def _result_of_process(
+    process: LimitedProcess, path: str, function: Callable[..., Any], *arguments: Any) -> Any:
+    """Call a function that reads the file in another process."""
     with errors_of_process(path):
-        return process.call(
-            FOR_FILES, partial(scene_from_file, shapes=True, texts=texts), path, options)
+        return process.call(FOR_FILES, function, *arguments)
 
 
 def _picture(page: str, output: Path) -> bytes:

@@ -52,16 +52,15 @@ def write_frame_change(
         msg = 'the file has changed since it was read'
         raise PoseNotSetError(msg, Place(str(loaded.path)))
 
-    def scene_with(texts: Mapping[str, bytes]) -> Scene:
+    def scene_with(*, texts: Mapping[str, bytes]) -> Scene:
         return loaded_scene_from_request(request, texts).scene
 
-    def measured(scene: Scene, element: int) -> Pose:
-        tree = tf_tree_from_scene(scene, request.tf_options)
-        return PoseLookup(scene, tree, positions).pose_of_element(element, reference)
+    def lookup(scene: Scene) -> PoseLookup:
+        return PoseLookup(scene, tf_tree_from_scene(scene, request.tf_options), positions)
 
     element, in_element = loaded.lookup.element(frame)
     asked = pose_product(asked, pose_inverse(in_element))
-    change = pose_change(scene, element, asked, measured, scene_with)
+    change = pose_change(scene, element, asked, lookup, scene_with, relative_to=reference)
     moved = set(names_of_moved(scene, change.scene))
     elements = loaded.tree.elements.tolist()
     if not dry_run:

@@ -5,16 +5,15 @@ Find the change of a file that moves an element to a pose.
 
 No rule of SDFormat is implemented here: the scene has the ``<pose>`` that places the element and
 its reference, and the new numbers are checked by reading the changed file. In URDF it is the
-``<origin>`` of a joint; for a file of xacro, an error says which one it needs.
+``<origin>`` of a joint; for a file of xacro, an error says which one it needs. The functions that
+a caller gives are in this room or below it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 import contextlib
 from functools import partial
-import os
-from pathlib import Path
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -23,7 +22,6 @@ from sdf_pose_bridge.errors import Place, PoseNotSetError, SdfError
 from sdf_pose_bridge.file_change import FileChange
 from sdf_pose_bridge.geometry.poses import (
     distance_and_angle,
-    OPTICAL_POSE,
     Pose,
     pose_inverse,
     pose_product,
@@ -34,24 +32,19 @@ from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.printed_text import quoted_names
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.sdformat.include.uris import resource_finder
-from sdf_pose_bridge.sdformat.limits import Usage
-from sdf_pose_bridge.sdformat.pose_writing import PoseText
-from sdf_pose_bridge.sdformat.sources import Sources
-from sdf_pose_bridge.sdformat.urdf.robot import robot_from_tree, RobotJoint
-from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
-from sdf_pose_bridge.sdformat.xml_tree import first_child
+from sdf_pose_bridge.sdformat.pose_writing import pose_text_from_file, PoseText
+from sdf_pose_bridge.tf.lookup import PoseLookup
 
 _MOST_ATTEMPTS = 4
 
-_OPTICAL_TOLERANCE = 2e-3
-"""Largest difference of an optical frame from ``OPTICAL_POSE``, as files round right angles."""
+Lookup: TypeAlias = Callable[[Scene], PoseLookup]
+"""Returns a look-up of poses, always at the same positions of joints."""
 
-Load: TypeAlias = Callable[[Mapping[str, bytes]], Scene]
-"""Reads the scene with other texts instead of some of its files."""
+Load: TypeAlias = Callable[..., Scene]
+"""Reads the scene with ``texts`` instead of some files, as :func:`~sdf_pose_bridge.load`."""
 
-Measure: TypeAlias = Callable[[Scene, int], Pose]
-"""Returns the pose of an element in the requested frame."""
+_Measure: TypeAlias = Callable[..., list[Pose]]
+"""Returns the poses of elements of a scene in the requested frame."""
 
 
 class PoseChange(NamedTuple):
@@ -65,7 +58,7 @@ class PoseChange(NamedTuple):
 
 
 def pose_change(
-    scene: Scene, element: int, asked: Pose, measure: Measure, load: Load, *,
+    scene: Scene, element: int, asked: Pose, lookup: Lookup, load: Load, *, relative_to: str = '',
     all_instances: bool = False,
 ) -> PoseChange:
     """
@@ -74,14 +67,16 @@ def pose_change(
     If the pose of a model places a frame in it, that pose is changed, unless the frame moves in
     the model.
 
-    :param asked: the pose, as ``measure`` shall return it.
-    :param measure: returns the pose of an element in a frame of the caller's choice, always at the
-        same positions of joints.
+    :param asked: the pose, in the frame ``relative_to``, as ``lookup`` shall find it.
     :param all_instances: whether other elements that the same ``<pose>`` places may move too.
     :return: the change; with it, the pose is right to 1e-9 metres and radians.
     :raises PoseNotSetError: if no change of a single ``<pose>`` or ``<origin>`` gives this pose.
     :raises SdfError: if a file can no longer be read.
     """
+    def measure(scene: Scene, *elements: int) -> list[Pose]:
+        found = lookup(scene)
+        return [found.pose_of_element(each, relative_to) for each in elements]
+
     change = partial(
         _change_of_own_pose, scene, measure=measure, load=load, all_instances=all_instances)
     try:
@@ -91,21 +86,17 @@ def pose_change(
             (model for model, frame in scene.placements.items() if frame == element), None)
         if model is None:
             raise
-    in_model = relative_pose(measure(scene, model), measure(scene, element))
+    in_model = relative_pose(*measure(scene, model, element))
     return change(model, pose_product(asked, pose_inverse(in_model)))
 
 
 def _change_of_own_pose(
-    scene: Scene, element: int, asked: Pose, measure: Measure, load: Load, *, all_instances: bool,
+    scene: Scene, element: int, asked: Pose, measure: _Measure, load: Load, *, all_instances: bool,
 ) -> PoseChange:
     _check_kind(scene, element)
     path = place_of_pose(scene, element)[0]
-    cache = Path(os.path.realpath(resource_finder().fuel_cache))
-    if cache in Path(os.path.realpath(path)).parents:
-        msg = 'the file is in the cache of Gazebo Fuel; copy the model and include the copy'
-        raise PoseNotSetError(msg, Place(path))
-    text = PoseText(bytes_from_file(path, Usage()), path)
-    marked = load({path: text.with_a_line_for_each_tag()})
+    text = pose_text_from_file(path)
+    marked = load(texts={path: text.with_a_line_for_each_tag()})
     if marked.names != scene.names or not np.array_equal(marked.poses, scene.poses):
         msg = 'the file has changed since it was read'
         raise PoseNotSetError(msg, Place(path))
@@ -118,7 +109,7 @@ def _change_of_own_pose(
     if text.is_urdf:
         return _change_of_origin(scene, element, text, make)
     reference = int(scene.references[element])
-    in_reference = relative_pose(measure(scene, reference), measure(scene, element))
+    in_reference = relative_pose(*measure(scene, reference, element))
     _check_joints(scene, element, in_reference, at)
     if is_written:
         return make(reference, text.pose(target), partial(text.with_pose, target), at.line)
@@ -126,7 +117,7 @@ def _change_of_own_pose(
 
 
 def _change_of_text(
-    scene: Scene, element: int, asked: Pose, measure: Measure, load: Load, path: str,
+    scene: Scene, element: int, asked: Pose, measure: _Measure, load: Load, path: str,
     reference: int, written: Pose, with_pose: Callable[[Pose, float], FileChange], line: int,
 ) -> PoseChange:
     """
@@ -135,7 +126,7 @@ def _change_of_text(
     :param written: the pose in the file.
     :param with_pose: returns the change to another pose, with an error of its numbers.
     """
-    in_asked, current = measure(scene, reference), measure(scene, element)
+    in_asked, current = measure(scene, reference, element)
     tolerance, at = TOLERANCE, Place(path, line)
     for _ in range(_MOST_ATTEMPTS):
         # The element has the pose C in the frame that the pose in the file places, most often the
@@ -146,11 +137,11 @@ def _change_of_text(
         written = Pose(*written[:3], *canonical_quaternion(written[3:]))
         change = with_pose(written, tolerance)
         try:
-            new = load({path: change.new_text})
+            new = load(texts={path: change.new_text})
         except SdfError as error:
             msg = f'with this pose the file would not be valid: {error.errors[0].message}'
             raise PoseNotSetError(msg, at) from error
-        current, in_asked = measure(new, element), measure(new, reference)
+        in_asked, current = measure(new, reference, element)
         if are_close(current, asked):
             return PoseChange(change, line, new)
         tolerance /= 10.0
@@ -214,47 +205,26 @@ def _change_of_origin(
     scene: Scene, element: int, text: PoseText, make: Callable[..., PoseChange],
 ) -> PoseChange:
     """Find the change of the ``<origin>`` of a joint of URDF that moves an element to a pose."""
-    sources, path = Sources(), scene.place(element).file
-    sources.add_path(path)
-    sources.add_tree(path, text.elements[0], {})
-    robot = robot_from_tree(text.elements[0], sources, is_included=scene.urdf_root is None)
     name = scene.own_name(element)
     scope = scene.names[element].removesuffix(name)
-    for joint in _joints_to_move(name, robot.parent_joints):
+    for origin in text.origins(name, is_included=scene.urdf_root is None):
         # The link "world" is the frame of the model.
-        parent = scene.index(scope + joint.parent, world=scene.world_of(element)) if (
-            scene.has(scope + joint.parent)) else int(scene.parents[element])
-        origin = first_child(joint.xml, 'origin')
-        number = text.elements.index(joint.xml if origin is None else origin)
+        parent = scene.index(scope + origin.parent, world=scene.world_of(element)) if (
+            scene.has(scope + origin.parent)) else int(scene.parents[element])
         with contextlib.suppress(PoseNotSetError):
             change: PoseChange = make(
-                parent, joint.origin, partial(text.with_origin, number), text.line(number))
+                parent, origin.pose, partial(text.with_origin, origin.element),
+                text.line(origin.element))
             break
     else:
         msg = f'this is URDF, and no <origin> of a joint in it puts "{scene.names[element]}" there'
         raise PoseNotSetError(msg, scene.place(element))
-    if not text.is_plain_urdf(number):
+    if not text.is_plain_urdf(origin.element):
         origin_text = change.file.new.decode(change.file.encoding).strip()
         msg = ('a pose of xacro, or in quat_xyzw, is not set; this one needs joint '
-               f'"{joint.xml.get("name")}": {origin_text}')
-        raise PoseNotSetError(msg, Place(path, change.line))
+               f'"{origin.joint}": {origin_text}')
+        raise PoseNotSetError(msg, Place(change.file.path, change.line))
     return change
-
-
-def _joints_to_move(name: str, joints: Mapping[str, RobotJoint]) -> Sequence[RobotJoint]:
-    """
-    Find the joints that can move a link or a joint; for an optical frame first its camera's.
-
-    :param joints: the joints by the names of their child links.
-    """
-    joint = joints.get(name) or next((each for each in joints.values() if each.name == name), None)
-    found: list[RobotJoint] = []
-    while joint is not None and (not found or joint.type == 'fixed'):
-        found.insert(0, joint)
-        is_optical = joint.type == 'fixed' and max(
-            distance_and_angle(joint.origin, OPTICAL_POSE)) < _OPTICAL_TOLERANCE
-        joint = joints.get(joint.parent) if is_optical else None
-    return found
 
 
 def are_close(a: Pose, b: Pose) -> bool:

@@ -9,9 +9,12 @@ text with other line breaks, in which each line has one start tag.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import count
+import os
+from pathlib import Path
 import re
+from typing import NamedTuple
 
 from lxml import etree
 
@@ -21,12 +24,16 @@ from sdf_pose_bridge.geometry.formulas import degrees_from_radians
 from sdf_pose_bridge.geometry.pose_attributes import PoseFormat, PoseTextError
 from sdf_pose_bridge.geometry.poses import Pose, relative_pose
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
+from sdf_pose_bridge.sdformat.include.uris import resource_finder
+from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.poses import pose_format_of, pose_from_text
+from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.urdf.robot import robot_from_tree
 from sdf_pose_bridge.sdformat.urdf.values import pose_from_xyz_rpy
 from sdf_pose_bridge.sdformat.values import number_from_word
 from sdf_pose_bridge.sdformat.versions import Version, version_from_text
-from sdf_pose_bridge.sdformat.xml_file import START_TAG, xml_from_bytes
-from sdf_pose_bridge.sdformat.xml_tree import text_of, words_of, written_tag
+from sdf_pose_bridge.sdformat.xml_file import bytes_from_file, START_TAG, xml_from_bytes
+from sdf_pose_bridge.sdformat.xml_tree import first_child, text_of, words_of, written_tag
 
 _FIRST_WITH_POSE = Version(1, 4)
 _TEXT_AFTER_COMMENTS = re.compile(rb'(?:\s*<!--.*?-->)*([^<]*)', re.DOTALL)
@@ -34,6 +41,18 @@ _WORD = re.compile(rb'[^ \t\n\r]+')
 _INDENTATION = re.compile(rb'\s*?(\r?\n[ \t]*)?(?=<)')
 _SAME_ROTATION = 1e-12
 _NO_BREAKS = bytes.maketrans(b'\r\n', b'  ')
+
+
+class Origin(NamedTuple):
+    """The ``<origin>`` of a joint of URDF."""
+
+    element: int
+    """Its number, or that of the joint if it has none."""
+    pose: Pose
+    parent: str
+    """The link that it is relative to."""
+    joint: str
+    """The name of the joint in the file."""
 
 
 class PoseText:
@@ -89,6 +108,16 @@ class PoseText:
             msg = 'the file alone does not place this element'
             raise PoseNotSetError(msg, Place(self._path))
         return line - 1
+
+    def origins(self, name: str, *, is_included: bool) -> Iterator[Origin]:
+        """Find the origins in URDF that can move a link or joint, by its name in SDFormat."""
+        root, sources = self.elements[0], Sources()
+        sources.add_path(self._path)
+        sources.add_tree(self._path, root, {})
+        for joint in robot_from_tree(root, sources, is_included=is_included).joints_to_move(name):
+            origin = first_child(joint.xml, 'origin')
+            number = self.elements.index(joint.xml if origin is None else origin)
+            yield Origin(number, joint.origin, joint.parent, joint.xml.get('name', ''))
 
     def is_plain_urdf(self, element: int) -> bool:
         """Return whether neither xacro nor an attribute for a quaternion says the numbers."""
@@ -214,6 +243,19 @@ class PoseText:
 
     def _encoded(self, text: bytes) -> bytes:
         return text.decode().encode(self._encoding)
+
+
+def pose_text_from_file(path: str) -> PoseText:
+    """
+    Read a file in which a pose shall be changed.
+
+    :raises SdfError: as for :class:`PoseText`, or if it is in the cache of Gazebo Fuel.
+    """
+    cache = Path(os.path.realpath(resource_finder().fuel_cache))
+    if cache in Path(os.path.realpath(path)).parents:
+        msg = 'the file is in the cache of Gazebo Fuel; copy the model and include the copy'
+        raise PoseNotSetError(msg, Place(path))
+    return PoseText(bytes_from_file(path, Usage()), path)
 
 
 def _words_from_pose(

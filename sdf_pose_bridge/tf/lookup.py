@@ -4,19 +4,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 import contextlib
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from sdf_pose_bridge.errors import JointPositionError, Place, UnknownFrameError
+from sdf_pose_bridge.errors import JointPositionError, Place, SdfError, UnknownFrameError
 from sdf_pose_bridge.geometry.poses import canonical_relative_pose, Pose
 from sdf_pose_bridge.nearest_names import NameIndex
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.joint_motion import NO_DOF
-from sdf_pose_bridge.tf.joint_positions import JointPositions
-from sdf_pose_bridge.tf.tree import TfTree
+from sdf_pose_bridge.tf.joint_positions import JointPositions, scene_at_positions
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions, TfTree
 
 
 class FoundPose(NamedTuple):
@@ -178,3 +179,14 @@ class PoseLookup:
             msg = f'"{name}" is in world "{scene.world_of(element)}", which is not published'
             raise UnknownFrameError(msg, Place(scene.path))
         return element
+
+
+def lookup_from_scene(scene: Scene, positions: Mapping[str, float] | None = None) -> PoseLookup:
+    """Look up by names of SDF, and of TF if these are unique, at positions of joints by names."""
+    scene = scene_at_positions(scene, positions) if positions else scene
+    try:
+        tree = tf_tree_from_scene(scene)
+    except SdfError:
+        # Frames that would share an id keep their names in SDF.
+        tree = tf_tree_from_scene(scene, TfOptions(kinds=frozenset()))
+    return PoseLookup(scene, tree)

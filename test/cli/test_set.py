@@ -3,6 +3,7 @@
 """``sdf_pose set``: the file, what is printed, and the exit code."""
 
 import math
+import sys
 
 import pytest
 from sdf_texts import INCLUDES_LEAF, LINK, link_with, model_file, write_files
@@ -45,6 +46,24 @@ def test_the_file_says_the_pose(set_pose, path):
     assert printed.startswith('--- good.sdf\n+++ good.sdf\n')
     assert '+    <frame name="f"><pose>-0.001 0 0 0 0 0</pose></frame>' in printed
     assert printed.endswith('moved with it: m, m::l\n')
+
+
+def test_no_module_on_the_way_to_the_file_calls_one_of_a_room_above(set_pose):
+    rooms, climbs = ['sdformat', 'scene', 'tf', 'export', 'cli'], []
+
+    def height(frame):
+        room = frame.f_globals['__name__'].split('.')[1:2]
+        return rooms.index(*room) if {*room} & {*rooms} else -1
+
+    def notice(frame, event, _):
+        if event == 'call' and height(frame) > height(frame.f_back) >= 0:
+            climbs.append((frame.f_back.f_code, frame.f_code))
+    sys.setprofile(notice)
+    try:
+        set_pose('m/l', '--relative-to', 'f', '1.5', *'00000')
+    finally:
+        sys.setprofile(None)
+    assert climbs == []
 
 
 def test_a_name_that_two_elements_have_is_printed_once(set_pose, path):

@@ -4,12 +4,14 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 import tempfile
 
 from differential.scene_builder import SCENE, SceneFiles
 import sdf_pose_bridge
 from sdf_pose_bridge.export.pose_setting import pose_change
+from sdf_pose_bridge.tf.lookup import lookup_from_scene
 
 
 def with_pose_set(scene, dice):
@@ -25,18 +27,15 @@ def with_pose_set(scene, dice):
         folder = Path(name).resolve()
         file = scene.write(folder, 'scene')
 
-        def load(texts):
-            return sdf_pose_bridge.load(file, resource_paths=[folder], texts=texts)
-
+        load = partial(sdf_pose_bridge.load, file, resource_paths=[folder])
         pose = sdf_pose_bridge.Pose(
             *(dice.randint(-90, 90) / 10 for _ in range(3)), 0.0, 0.6, 0.0, 0.8)
         try:
-            before = load({})
+            before = load()
             if not before.names:
                 return scene
             element = dice.randrange(len(before.names))
-            change = pose_change(
-                before, element, pose, lambda scene, index: scene.pose_of(index), load)
+            change = pose_change(before, element, pose, lookup_from_scene, load)
         except sdf_pose_bridge.SdfError:
             return scene
         path = str(Path(change.file.path).resolve().relative_to(folder / 'scene'))

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a file must say so that an element is at a pose."""
 
+from functools import partial
 import re
 
 from matrices import assert_close
@@ -9,10 +10,11 @@ import pytest
 from sdf_texts import fixed_joint, model_file, posed, world_file, write_files
 import urdf_texts
 
-from sdf_pose_bridge import load, Pose, Scene
+from sdf_pose_bridge import load, Pose
 from sdf_pose_bridge.errors import PoseNotSetError
 from sdf_pose_bridge.export.pose_setting import pose_change
 from sdf_pose_bridge.geometry.poses import canonical_relative_pose
+from sdf_pose_bridge.tf.lookup import lookup_from_scene
 
 ASKED = Pose(0.5, -1.0, 2.0, 0.5, 0.5, 0.5, 0.5)
 MODEL = model_file(posed('link', 'a', '1 0 0 0 0 0') + posed('frame', 'f', '0 1 0 0 0 1', 'a'))
@@ -38,14 +40,10 @@ def make_change(tmp_path):
     def change(name, relative_to='', *, file='m', **options):
         path = str(tmp_path / f'{file}.sdf')
 
-        def loaded(texts):
-            return load(path, texts=texts)
-
-        def measured(scene, element):
-            return scene.pose(scene.names[element], relative_to)
-
-        scene = loaded({})
-        made = pose_change(scene, scene.index(name), ASKED, measured, loaded, **options)
+        scene = load(path)
+        made = pose_change(
+            scene, scene.index(name), ASKED, lookup_from_scene, partial(load, path),
+            relative_to=relative_to, **options)
         assert_at(made.scene.pose(name, relative_to), ASKED)
         return made
     return change
@@ -176,8 +174,7 @@ def test_a_file_that_has_changed_since_it_was_read_is_refused(tmp_path):
     scene = load(path)
     write_files(tmp_path, m=MODEL.replace('1 0 0 0 0 0', '2 0 0 0 0 0'))
     with pytest.raises(PoseNotSetError, match='has changed since it was read'):
-        pose_change(scene, scene.index('m::a'), ASKED, Scene.pose_of,
-                    lambda texts: load(path, texts=texts))
+        pose_change(scene, scene.index('m::a'), ASKED, lookup_from_scene, partial(load, path))
 
 
 def test_a_file_of_the_cache_of_fuel_is_refused(change, tmp_path, monkeypatch):

@@ -13,7 +13,7 @@ from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.joint_positions import JointPositions
-from sdf_pose_bridge.tf.lookup import PoseLookup
+from sdf_pose_bridge.tf.lookup import lookup_from_scene, PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 ROBOT = """\
@@ -166,3 +166,12 @@ def test_a_model_beside_a_world_has_nothing_in_common_with_it(text):
     lookup = lookup_in(f'<sdf version="1.10">{text.format(model=model)}</sdf>')
     with pytest.raises(UnknownFrameError):
         lookup.pose('m::l', 'f')
+
+
+def test_a_lookup_without_options_is_at_positions_and_knows_names_that_share_an_id():
+    text = model_file(
+        '<link name="a/b"/><model name="a"><link name="b"/></model><link name="c"/>' + joint(
+            '<parent>a/b</parent><child>c</child><axis><xyz>1 0 0</xyz></axis>', 'j', 'prismatic'))
+    scene = load_text(text)
+    assert lookup_from_scene(scene).pose('m::c', 'm::a::b').pose.x == 0.0
+    assert lookup_from_scene(scene, {'j': 0.5}).pose('m::c', 'm::a::b').pose.x == 0.5

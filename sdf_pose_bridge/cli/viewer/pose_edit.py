@@ -12,11 +12,11 @@ from typing import TypeAlias
 
 import viser
 
-from sdf_pose_bridge import Pose, Scene, scene_at_positions, SdfError
+from sdf_pose_bridge import Pose, Scene, SdfError
 from sdf_pose_bridge.cli.viewer.frame_texts import escaped, html_of_difference, html_of_lines
 from sdf_pose_bridge.cli.viewer.server import Events
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
-from sdf_pose_bridge.export.pose_setting import Measure, PoseChange
+from sdf_pose_bridge.export.pose_setting import Lookup, PoseChange
 from sdf_pose_bridge.geometry.formats import converted_poses, POSE_FORMATS, PoseFormatError
 from sdf_pose_bridge.geometry.pose_texts import (
     number_from_text,
@@ -27,8 +27,9 @@ from sdf_pose_bridge.geometry.pose_texts import (
 from sdf_pose_bridge.geometry.poses import pose_product, relative_pose
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
 from sdf_pose_bridge.geometry.units import POSE_LABELS, Units
+from sdf_pose_bridge.tf.lookup import lookup_from_scene
 
-FindChange: TypeAlias = Callable[[Scene, int, Pose, Measure], PoseChange]
+FindChange: TypeAlias = Callable[[Scene, int, Pose, Lookup], PoseChange]
 """Finds a change as :func:`~sdf_pose_bridge.export.pose_setting.pose_change` does."""
 
 _SEVERAL = re.compile(r'\s|[\[({<:=]|[,;].*[,;]', re.DOTALL)
@@ -111,7 +112,7 @@ class PoseEdit:
         try:
             self._change = self._find_change(
                 shown.loaded, element, self._pose,
-                lambda scene, index: scene_at_positions(scene, shown.positions).pose_of(index))
+                partial(lookup_from_scene, positions=shown.positions))
         except SdfError as error:
             self._errors = list(map(str, error.errors))
             # While one drags, the next pose may be possible.

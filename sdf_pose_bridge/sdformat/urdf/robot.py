@@ -16,7 +16,7 @@ import math
 from typing import NamedTuple
 
 from sdf_pose_bridge.errors import DuplicateNameError, ElementInvalidError, ParsingError
-from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.poses import distance_and_angle, OPTICAL_POSE, Pose
 from sdf_pose_bridge.geometry.units import LARGEST_ANGLE_RAD
 from sdf_pose_bridge.names import JOINT_SUFFIX, unused_name
 from sdf_pose_bridge.printed_text import shortened
@@ -44,6 +44,10 @@ _SETTINGS = frozenset({
     'turnGravityOff', 'visual',
 })
 """Children of ``<gazebo>`` that are not SDFormat."""
+
+_OPTICAL_TOLERANCE = 2e-3
+"""Largest difference of an optical frame from ``OPTICAL_POSE``, as files round right angles."""
+
 
 class RobotInertial(NamedTuple):
     """Mass, center of mass and moments of inertia of a link."""
@@ -108,6 +112,22 @@ class Robot(NamedTuple):
     extensions: Mapping[str, list[XmlElement]]
     """The elements of SDFormat in ``<gazebo>`` by the name of their link or joint; the name is
     empty for the model."""
+
+    def joints_to_move(self, name: str) -> Sequence[RobotJoint]:
+        """
+        Find the joints that can move a link or a joint; for an optical frame first its camera's.
+
+        :param name: the name of the link, or of the joint in SDFormat.
+        """
+        joint = self.parent_joints.get(name) or next(
+            (each for each in self.parent_joints.values() if each.name == name), None)
+        found: list[RobotJoint] = []
+        while joint is not None and (not found or joint.type == 'fixed'):
+            found.insert(0, joint)
+            is_optical = joint.type == 'fixed' and max(
+                distance_and_angle(joint.origin, OPTICAL_POSE)) < _OPTICAL_TOLERANCE
+            joint = self.parent_joints.get(joint.parent) if is_optical else None
+        return found
 
 
 def robot_from_tree(root: XmlElement, sources: Sources, *, is_included: bool) -> Robot:

@@ -4,6 +4,7 @@
 
 import math
 
+from lxml import etree
 import numpy as np
 import pytest
 from sdf_texts import errors_of, only_error, world_file
@@ -11,6 +12,8 @@ from urdf_texts import joint, link, origin, robot, shape
 
 from sdf_pose_bridge import load, load_text, scene_at_positions
 from sdf_pose_bridge.problems import MOST_PROBLEMS
+from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.urdf.robot import robot_from_tree
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
 TWO = link('a') + link('b')
@@ -175,3 +178,12 @@ def test_robot_may_have_the_name_of_its_link():
     scene = load_text(robot(link('a') + link('r') + joint('j', 'a', 'r', content=origin('1 0 0'))))
     assert tf_tree_from_scene(scene).frame_ids == ('a', 'r')
     assert scene.pose('r').x == 1.0
+
+
+@pytest.mark.parametrize(('name', 'joints'), [
+    ('b', ['turn']), ('turn', ['turn']), ('c', ['turn', 'rep103']), ('a', []), ('none', [])])
+def test_joints_that_can_move_a_link_or_joint(name, joints):
+    text = robot(TWO + link('c') + joint('turn', 'a', 'b', 'fixed') + joint(
+        'rep103', 'b', 'c', 'fixed', origin(rpy='-1.5708 0 -1.5708')))
+    read = robot_from_tree(etree.fromstring(text), Sources(), is_included=False)
+    assert [each.name for each in read.joints_to_move(name)] == joints
