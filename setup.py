@@ -27,10 +27,10 @@ NOT_INSTALLED = ('__pycache__', '.pytest_cache', '.mypy_cache', '.ruff_cache')
 COMMAND_LINE = 'sdf_pose = sdf_pose_bridge.cli.main:main'
 # For `ros2 run`, which finds executables by the name of their package.
 ROS_EXECUTABLES = [
-    COMMAND_LINE, 'bridge = sdf_pose_bridge.ros.bridge:main',
-    'robot_state_publisher = sdf_pose_bridge.ros.bridge:robot_state_publisher']
+    COMMAND_LINE, 'bridge = sdf_pose_bridge.ros.node.bridge:main',
+    'robot_state_publisher = sdf_pose_bridge.ros.node.bridge:robot_state_publisher']
 # In the PATH, where `bridge` is a program of iproute2.
-COMMANDS = [COMMAND_LINE, 'sdf_pose_bridge = sdf_pose_bridge.ros.bridge:main']
+COMMANDS = [COMMAND_LINE, 'sdf_pose_bridge = sdf_pose_bridge.ros.node.bridge:main']
 MAKES_A_WHEEL = not {'bdist_wheel', 'dist_info', 'editable_wheel'}.isdisjoint(sys.argv)
 if MAKES_A_WHEEL:
     # Modules that were deleted since an older build would be installed too.

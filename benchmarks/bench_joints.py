@@ -126,10 +126,10 @@ def transforms_of_100_joints() -> Iterator[tuple[Function, Function | None]]:
     from rclpy.serialization import serialize_message
 
     from sdf_pose_bridge.ros.cdr import JOINT_STATE
-    from sdf_pose_bridge.ros.published_frames import PublishedFrames
-    from sdf_pose_bridge.ros.publishers import Publishers
-    from sdf_pose_bridge.ros.state_messages import KnownEffects
-    from sdf_pose_bridge.ros.state_topic import StateTopic, TopicKey
+    from sdf_pose_bridge.ros.following.state_messages import KnownEffects
+    from sdf_pose_bridge.ros.following.state_topic import StateTopic, TopicKey
+    from sdf_pose_bridge.ros.publishing.published_frames import PublishedFrames
+    from sdf_pose_bridge.ros.publishing.publishers import Publishers
     from sdf_pose_bridge.tf.lookup import PoseLookup
     with node() as ros:
         scene = sdf_pose_bridge.load_text(chain_text(100))

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rclpy.node import Node
     from rclpy.publisher import Publisher
 
-    from sdf_pose_bridge.ros.published_frames import PublishedFrames
+    from sdf_pose_bridge.ros.publishing.published_frames import PublishedFrames
 
 MODELS = 1000
 FRAMES = 10 * MODELS
@@ -130,7 +130,7 @@ class Bench:
     def __init__(self, ros: Node) -> None:
         from tf2_msgs.msg import TFMessage
 
-        from sdf_pose_bridge.ros.publishers import Publishers
+        from sdf_pose_bridge.ros.publishing.publishers import Publishers
         self.ros = ros
         self.scene = scene_of(MODELS)
         self.tree = tf_tree_from_scene(self.scene)
@@ -141,7 +141,7 @@ class Bench:
 
     def frames(self, tree: TfTree) -> PublishedFrames:
         """Return the bridge's frames without topics of poses."""
-        from sdf_pose_bridge.ros.published_frames import PublishedFrames
+        from sdf_pose_bridge.ros.publishing.published_frames import PublishedFrames
         return PublishedFrames(self.publishers, tree, None, {})
 
     def send_objects(self, transforms: Iterable[tuple[str, str, Pose]]) -> None:
@@ -224,9 +224,9 @@ def transforms_one_by_one() -> Iterator[tuple[Function, Function | None]]:
 def topics_of_poses() -> Iterator[tuple[Function, Function | None]]:
     from geometry_msgs.msg import PoseStamped
 
-    from sdf_pose_bridge.ros.published_frames import PublishedFrames
-    from sdf_pose_bridge.ros.publishers import Publishers
-    from sdf_pose_bridge.ros.topic_names import pose_topics_from_patterns
+    from sdf_pose_bridge.ros.publishing.published_frames import PublishedFrames
+    from sdf_pose_bridge.ros.publishing.publishers import Publishers
+    from sdf_pose_bridge.ros.publishing.topic_names import pose_topics_from_patterns
     tree = tf_tree_from_scene(scene_of(TOPICS // 10))
     assert len(tree.frame_ids) == TOPICS
     with node() as ros:

@@ -161,7 +161,7 @@ def asked_reload() -> Iterator[tuple[Function, Function | None]]:
     'work cell: change of the file, right after the watch looked, to its transforms at a listener',
     counterpart='the period of the watch', goal=AtMostTimes(1.2))
 def noticed_change() -> Iterator[tuple[Function, Function | None]]:
-    from sdf_pose_bridge.ros.node import LOOKING_PERIOD_S
+    from sdf_pose_bridge.ros.node.node import LOOKING_PERIOD_S
     assert LOOKING_PERIOD_S * 0.2 <= LONGEST_NOTICE_S
     with work_cell() as (bridge, next_message):
         numbers = itertools.count(1)

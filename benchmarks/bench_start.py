@@ -199,7 +199,7 @@ def report_imports(starter: Starter) -> None:
     seconds = []
     for _ in range(RUNS):
         common = starter.imports(program)
-        ours = starter.imports('import sdf_pose_bridge.ros.process, sdf_pose_bridge.ros.node')
+        ours = starter.imports('from sdf_pose_bridge.ros.node import node, process')
         seconds.append(sum(each for name, each in ours.items() if name not in common))
     print(
         f'    imports of the bridge beyond those of the minimal node: median '

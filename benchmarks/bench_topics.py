@@ -22,9 +22,9 @@ from benchmarks.bench_publication import latched_publisher
 from benchmarks.bench_publication import node
 from benchmarks.bench_publication import scene_of
 from geometry_msgs.msg import PoseStamped
-from sdf_pose_bridge.ros.published_frames import PublishedFrames
-from sdf_pose_bridge.ros.publishers import Publishers
-from sdf_pose_bridge.ros.topic_names import pose_topics_from_patterns
+from sdf_pose_bridge.ros.publishing.published_frames import PublishedFrames
+from sdf_pose_bridge.ros.publishing.publishers import Publishers
+from sdf_pose_bridge.ros.publishing.topic_names import pose_topics_from_patterns
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
 def memory_kb():

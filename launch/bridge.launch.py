@@ -39,8 +39,8 @@ import yaml
 
 from sdf_pose_bridge.errors import AddressError, SdfError
 from sdf_pose_bridge.export.loading import loaded_scene_from_request
-from sdf_pose_bridge.ros.given_parameters import settings_from_values
-from sdf_pose_bridge.ros.parameters import SettingsError
+from sdf_pose_bridge.ros.parameters.declarations import SettingsError
+from sdf_pose_bridge.ros.parameters.given import settings_from_values
 
 PARAMETERS = {
     'sdf_file': 'SDFormat file to publish: a path, or a file://, package:// or model:// URI.',

@@ -8,10 +8,10 @@ from sdf_texts import joint, plugin, world_file
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.ros.cdr import StampedPose
-from sdf_pose_bridge.ros.model_poses import messages_from_poses
-from sdf_pose_bridge.ros.published_frames import PublishedFrames
-from sdf_pose_bridge.ros.publishers import Publishers
-from sdf_pose_bridge.ros.state_messages import KnownEffects, StateSource
+from sdf_pose_bridge.ros.following.model_poses import messages_from_poses
+from sdf_pose_bridge.ros.following.state_messages import KnownEffects, StateSource
+from sdf_pose_bridge.ros.publishing.published_frames import PublishedFrames
+from sdf_pose_bridge.ros.publishing.publishers import Publishers
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions

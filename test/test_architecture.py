@@ -15,7 +15,8 @@ MODULES = sorted(
 PAGES = [ROOT / 'CONTRIBUTING.md', *sorted((ROOT / 'docs').glob('*.md'))]
 
 TESTED_AS_A_WHOLE = {
-    'ros/node.py': ['integration/test_bridge_reload.py', 'integration/test_bridge_changes.py'],
+    'ros/node/node.py': [
+        'integration/test_bridge_reload.py', 'integration/test_bridge_changes.py'],
 }
 """Modules that run only as a part of others, and the test modules that run these."""
 

@@ -11,8 +11,8 @@ pytest.importorskip('yaml', reason='PyYAML is not installed')
 
 import yaml
 
-from sdf_pose_bridge.ros.given_parameters import settings_from_node
-from sdf_pose_bridge.ros.parameters import DECLARATIONS
+from sdf_pose_bridge.ros.parameters.declarations import DECLARATIONS
+from sdf_pose_bridge.ros.parameters.given import settings_from_node
 
 FILE = ROOT / 'config/bridge.yaml'
 DEFAULTS = {name: declaration.default for name, declaration in DECLARATIONS.items()}

@@ -108,5 +108,5 @@ def test_the_page_of_the_api_lists_all_exported_names_and_modules_that_exist():
 
 def test_parameter():
     pytest.importorskip('rclpy', reason='needs ROS 2')
-    from sdf_pose_bridge.ros.parameters import DECLARATIONS
+    from sdf_pose_bridge.ros.parameters.declarations import DECLARATIONS
     assert DECLARATIONS.keys() <= names_in('ros_interface.md')

@@ -17,7 +17,7 @@ from sdf_pose_bridge.errors import SdfError, shortened_message, UriLookupError
 from sdf_pose_bridge.export.loaded_scene import LoadedScene
 from sdf_pose_bridge.printed_text import printable, quoted_names
 from sdf_pose_bridge.problems import by_message, MOST_PROBLEMS
-from sdf_pose_bridge.ros.parameters import SettingsError
+from sdf_pose_bridge.ros.parameters.declarations import SettingsError
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.frame_ids import FrameNames, FrameNaming
 from sdf_pose_bridge.tf.joint_motion import dofs_from_joint

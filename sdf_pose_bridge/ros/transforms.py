@@ -10,7 +10,7 @@ from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
 from std_msgs.msg import Header
 
 from sdf_pose_bridge.export.loading import loaded_scene_from_request
-from sdf_pose_bridge.ros.given_parameters import settings_from_values
+from sdf_pose_bridge.ros.parameters.given import settings_from_values
 
 
 def transforms_from_parameters(**parameters: Any) -> list[TransformStamped]:

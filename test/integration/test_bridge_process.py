@@ -15,7 +15,7 @@ from ros_domain import needs_fast_dds
 from rosgraph_msgs.msg import Clock
 from slow_file import SlowFile
 
-from sdf_pose_bridge.ros.middleware import PROFILES
+from sdf_pose_bridge.ros.node.middleware import PROFILES
 
 ((PROFILE, OTHER_VARIABLE),) = [
     (each, other.variable) for each in PROFILES for other in PROFILES
@@ -43,7 +43,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 from sdf_pose_bridge.ros.background import Worker
-from sdf_pose_bridge.ros.process import _spin_until_signal
+from sdf_pose_bridge.ros.node.process import _spin_until_signal
 
 rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
 node = Node('idle')

@@ -41,7 +41,7 @@ from slow_file import SlowFile
 from std_srvs.srv import Trigger
 
 from sdf_pose_bridge.geometry.formats import POSE_FORMATS
-from sdf_pose_bridge.ros.parameters import DECLARATIONS
+from sdf_pose_bridge.ros.parameters.declarations import DECLARATIONS
 from sdf_pose_bridge_interfaces.srv import ConvertPoses, ConvertRotation, LookupPose
 
 LONG_NAME = 'abcdefghijklmnopqrstuvwxyz' * 7

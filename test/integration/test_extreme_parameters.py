@@ -9,8 +9,8 @@ from pathlib import Path
 from changes import asked, asked_to_set, call, world
 from rcl_interfaces.srv import GetParameters
 
-from sdf_pose_bridge.ros.parameters import DECLARATIONS
-from sdf_pose_bridge.ros.setting_rules import MOST_VALUES
+from sdf_pose_bridge.ros.parameters.declarations import DECLARATIONS
+from sdf_pose_bridge.ros.parameters.rules import MOST_VALUES
 from sdf_pose_bridge_interfaces.srv import LookupPose
 
 MODELS = 20_000

@@ -161,7 +161,7 @@ import _testcapi, sys
 from pathlib import Path
 from sdf_pose_bridge.geometry import formats
 from sdf_pose_bridge.limited_process import Call
-from sdf_pose_bridge.ros.bridge import main
+from sdf_pose_bridge.ros.node.bridge import main
 
 def then_allocations_fail(function):
     def call(*arguments, **others):
@@ -226,8 +226,8 @@ UNABLE_TO_PUBLISH = """
 import sys
 from sdf_pose_bridge.ros.scene_reader import SceneReader
 reader = SceneReader()
-from sdf_pose_bridge.ros.process import run
-from sdf_pose_bridge.ros.published_frames import PublishedFrames
+from sdf_pose_bridge.ros.node.process import run
+from sdf_pose_bridge.ros.publishing.published_frames import PublishedFrames
 
 def publish_topics(frames):
     if frames.tree.transforms[-1, 0] == 2.0:
@@ -270,9 +270,9 @@ TELLING = """
 import sys
 from sdf_pose_bridge.ros.scene_reader import SceneReader
 reader = SceneReader()
-from sdf_pose_bridge.ros.joint_states import JointStates
-from sdf_pose_bridge.ros.process import run
-from sdf_pose_bridge.ros.published_frames import PublishedFrames
+from sdf_pose_bridge.ros.following.joint_states import JointStates
+from sdf_pose_bridge.ros.node.process import run
+from sdf_pose_bridge.ros.publishing.published_frames import PublishedFrames
 
 def told(function):
     def call(*arguments):
@@ -302,8 +302,8 @@ WITH_DEFECT = """
 import sys
 from sdf_pose_bridge.ros.scene_reader import SceneReader
 reader = SceneReader()
-from sdf_pose_bridge.ros import state_topic
-from sdf_pose_bridge.ros.process import run
+from sdf_pose_bridge.ros.following import state_topic
+from sdf_pose_bridge.ros.node.process import run
 
 def joint_state_from_bytes(*_):
     raise TypeError('a defect')
@@ -368,7 +368,7 @@ LIMITED = """
 import sys
 from sdf_pose_bridge.process_limits import Allowance
 from sdf_pose_bridge.ros import scene_reader
-from sdf_pose_bridge.ros.bridge import main
+from sdf_pose_bridge.ros.node.bridge import main
 
 scene_reader.FOR_FILES = Allowance({})
 sys.exit(main())

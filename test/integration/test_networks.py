@@ -17,7 +17,7 @@ import pytest
 from ros_domain import needs_fast_dds
 from sizes import size
 
-from sdf_pose_bridge.ros.middleware import PROFILES
+from sdf_pose_bridge.ros.node.middleware import PROFILES
 
 ADDRESSES = {'a': '10.211.7.1', 'b': '10.211.7.2'}
 LEASE = '<leaseDuration><sec>3</sec></leaseDuration>'

@@ -34,8 +34,8 @@ from sdf_pose_bridge.ros.log_lines import (
     text_about_defect,
     WARNING_PERIOD_S,
 )
-from sdf_pose_bridge.ros.parameters import SettingsError
-from sdf_pose_bridge.ros.state_report import StateReport
+from sdf_pose_bridge.ros.parameters.declarations import SettingsError
+from sdf_pose_bridge.ros.publishing.state_report import StateReport
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.anchors import AnchorModels
@@ -168,7 +168,7 @@ def parts(text):
 
 
 def logged_texts():
-    for path in Path(log_lines.__file__).parent.glob('*.py'):
+    for path in Path(log_lines.__file__).parent.rglob('*.py'):
         for call in ast.walk(ast.parse(path.read_text())):
             if isinstance(call, ast.Call) and re.search(
                     r'(logger(\(\))?\.(debug|info|warning|error|fatal)|log_error)$',

@@ -7,7 +7,7 @@ from sdf_texts import model_file
 
 from sdf_pose_bridge import SdfError
 from sdf_pose_bridge.errors import AddressError
-from sdf_pose_bridge.ros.parameters import SettingsError
+from sdf_pose_bridge.ros.parameters.declarations import SettingsError
 from sdf_pose_bridge.ros.transforms import transforms_from_parameters
 
 ROBOT = model_file(

@@ -1,0 +1,39 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Declarations of parameters: what settings of them mean together."""
+
+import pytest
+
+from sdf_pose_bridge.ros.parameters.declarations import Declaration, DECLARATIONS
+from sdf_pose_bridge.ros.parameters.given import settings_from_values
+from sdf_pose_bridge.tf.joint_positions import UnreportedJoints
+from sdf_pose_bridge.tf.tree import TfOptions
+
+
+def test_what_is_read_has_all_that_a_load_needs():
+    settings = settings_from_values({
+        'sdf_file': 'cell.sdf', 'kinds': ['auto'], 'frame_prefix': 'r/',
+        'unreported_joints': 'zero', 'use_joint_states': True})
+    request = settings.load_request
+    assert request.source == 'cell.sdf'
+    assert request.tf_options == TfOptions(kinds=None, frame_prefix='r/', use_joint_states=True)
+    assert request.unreported_joints is UnreportedJoints.ZERO
+
+
+@pytest.mark.parametrize('name', DECLARATIONS)
+def test_the_default_is_a_value_that_is_allowed(name):
+    DECLARATIONS[name].convert(DECLARATIONS[name].default)
+
+
+@pytest.mark.parametrize(('name', 'end'), [
+    ('root_frame', '; at most 255 characters'), ('on_missing_include', 'error, skip'),
+    ('pose_topics', '; at most 1000 values of at most 255 characters'), ('watch', 'true or false'),
+])
+def test_the_rule_of_a_text_names_its_limit(name, end):
+    assert DECLARATIONS[name].rule.endswith(end)
+
+
+@pytest.mark.parametrize(('default', 'most'), [('', 0), ([], 0), ('a', 0), (1.0, 9), (True, 9)])
+def test_a_text_without_a_limit_cannot_be_declared(default, most):
+    with pytest.raises(TypeError, match='needs most_characters'):
+        Declaration(default, 'What it is.', 'its rule', str, most_characters=most)
