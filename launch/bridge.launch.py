@@ -38,7 +38,7 @@ from launch_ros.parameter_descriptions import ParameterFile, ParameterValue
 import yaml
 
 from sdf_pose_bridge.errors import AddressError, SdfError
-from sdf_pose_bridge.export.loading import loaded_scene_from_request
+from sdf_pose_bridge.export.scene_from_request import loaded_scene_from_request
 from sdf_pose_bridge.ros.parameters.declarations import SettingsError
 from sdf_pose_bridge.ros.parameters.given import settings_from_values
 

@@ -12,7 +12,7 @@ import re
 import sys
 
 from sdf_pose_bridge.cli.arguments import add_file_arguments, add_format_argument
-from sdf_pose_bridge.cli.loading import doubts_about_frames, load_file
+from sdf_pose_bridge.cli.input_files import doubts_about_frames, load_file
 from sdf_pose_bridge.cli.printing import in_order, print_json, print_problems
 from sdf_pose_bridge.errors import Place, SdfError, SdfWarning
 from sdf_pose_bridge.printed_text import printable, shortened

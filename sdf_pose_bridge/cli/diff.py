@@ -19,7 +19,7 @@ from sdf_pose_bridge.cli.arguments import (
     argument_type,
 )
 from sdf_pose_bridge.cli.frames import MOST_MOVED, print_csv, print_table, TableRow
-from sdf_pose_bridge.cli.loading import load_file, sdf_name
+from sdf_pose_bridge.cli.input_files import load_file, sdf_name
 from sdf_pose_bridge.cli.printing import print_json, print_problems
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.poses import TOLERANCE

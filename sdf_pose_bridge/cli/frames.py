@@ -12,7 +12,7 @@ import shutil
 import sys
 from typing import Any, NamedTuple, TypeAlias
 
-from sdf_pose_bridge.cli.loading import load_file
+from sdf_pose_bridge.cli.input_files import load_file
 from sdf_pose_bridge.cli.printing import BOLD, DIM, print_json, print_problems, styled
 from sdf_pose_bridge.errors import SdfError, SdfWarning
 from sdf_pose_bridge.geometry.poses import TOLERANCE

@@ -25,7 +25,7 @@ from sdf_pose_bridge.cli.arguments import (
     add_model_argument,
     add_output_argument,
 )
-from sdf_pose_bridge.cli.loading import scene_of
+from sdf_pose_bridge.cli.input_files import scene_of
 from sdf_pose_bridge.cli.printing import CommandError, write_text
 from sdf_pose_bridge.file_change import replace_file
 from sdf_pose_bridge.printed_text import printable, shortened

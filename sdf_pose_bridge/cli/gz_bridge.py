@@ -12,7 +12,7 @@ import sys
 from xml.sax.saxutils import escape, quoteattr
 
 from sdf_pose_bridge.cli.arguments import add_file_arguments, add_output_argument, argument_type
-from sdf_pose_bridge.cli.loading import doubts_about_frames, scene_of, STANDARD_INPUT
+from sdf_pose_bridge.cli.input_files import doubts_about_frames, scene_of, STANDARD_INPUT
 from sdf_pose_bridge.cli.printing import CommandError, print_problems, write_text
 from sdf_pose_bridge.errors import SdfError, SdfWarning
 from sdf_pose_bridge.export.gazebo_bridge import node_parameters

@@ -20,7 +20,7 @@ from sdf_pose_bridge.cli.arguments import (
     argument_type,
 )
 from sdf_pose_bridge.cli.frames import Frame, print_frames, TableRow
-from sdf_pose_bridge.cli.loading import sdf_name
+from sdf_pose_bridge.cli.input_files import sdf_name
 from sdf_pose_bridge.errors import JointPositionError, SdfWarning
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.scene.scene import Scene

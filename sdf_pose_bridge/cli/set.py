@@ -16,7 +16,7 @@ from sdf_pose_bridge.cli.given_poses import (
     PoseReader,
     poses_from_rows,
 )
-from sdf_pose_bridge.cli.loading import loader, scene_of, STANDARD_INPUT
+from sdf_pose_bridge.cli.input_files import loader, scene_of, STANDARD_INPUT
 from sdf_pose_bridge.cli.printing import CommandError, print_message
 from sdf_pose_bridge.export.pose_setting import are_close, pose_change
 from sdf_pose_bridge.geometry.pose_texts import FORMATS

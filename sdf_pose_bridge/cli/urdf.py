@@ -13,7 +13,7 @@ from sdf_pose_bridge.cli.arguments import (
     add_output_argument,
     argument_type,
 )
-from sdf_pose_bridge.cli.loading import scene_of
+from sdf_pose_bridge.cli.input_files import scene_of
 from sdf_pose_bridge.cli.printing import print_problems, write_text
 from sdf_pose_bridge.export.urdf_text import urdf_from_scene
 

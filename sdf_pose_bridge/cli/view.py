@@ -30,7 +30,7 @@ from sdf_pose_bridge.cli.arguments import (
     argument_type,
     tf_options_from_arguments,
 )
-from sdf_pose_bridge.cli.loading import loader, scene_from_file, STANDARD_INPUT
+from sdf_pose_bridge.cli.input_files import loader, scene_from_file, STANDARD_INPUT
 from sdf_pose_bridge.cli.printing import CommandError, print_problems
 from sdf_pose_bridge.cli.viewer import LIBRARIES, UntestedViserError
 from sdf_pose_bridge.errors import SdfError

@@ -8,9 +8,9 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from sdf_pose_bridge.errors import Place, PoseNotSetError
-from sdf_pose_bridge.export.loaded_scene import fingerprint_of_scene, LoadRequest
-from sdf_pose_bridge.export.loading import loaded_scene_from_request
 from sdf_pose_bridge.export.pose_setting import pose_change
+from sdf_pose_bridge.export.published_scene import fingerprint_of_scene, LoadRequest
+from sdf_pose_bridge.export.scene_from_request import loaded_scene_from_request
 from sdf_pose_bridge.geometry.poses import Pose, pose_inverse, pose_product
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.comparison import names_of_moved

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sdf_pose_bridge.errors import SdfError, SdfWarning
-from sdf_pose_bridge.export.loaded_scene import fingerprint_of_scene, LoadRequest
+from sdf_pose_bridge.export.published_scene import fingerprint_of_scene, LoadRequest
 from sdf_pose_bridge.geometry.poses import Pose, pose_product
 from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.printed_text import shortened

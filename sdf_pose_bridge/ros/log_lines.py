@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from sdf_pose_bridge.errors import SdfError, shortened_message, UriLookupError
-from sdf_pose_bridge.export.loaded_scene import LoadedScene
+from sdf_pose_bridge.export.published_scene import LoadedScene
 from sdf_pose_bridge.printed_text import printable, quoted_names
 from sdf_pose_bridge.problems import by_message, MOST_PROBLEMS
 from sdf_pose_bridge.ros.parameters.declarations import SettingsError

@@ -7,7 +7,7 @@ from sdf_texts import element, LINK, model_file, world_file, write_files
 
 from sdf_pose_bridge import Kind
 from sdf_pose_bridge.cli.arguments import tf_options_from_arguments
-from sdf_pose_bridge.cli.loading import scene_of
+from sdf_pose_bridge.cli.input_files import scene_of
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
 

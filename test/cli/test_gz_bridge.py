@@ -118,7 +118,7 @@ def test_output_is_written_to_a_file(run_main, files):
 ])
 def test_the_node_follows_the_topics_that_are_bridged(parsed, files, arguments, models):
     pytest.importorskip('rclpy', reason='needs ROS 2')
-    from sdf_pose_bridge.export.loading import loaded_scene_from_request
+    from sdf_pose_bridge.export.scene_from_request import loaded_scene_from_request
     from sdf_pose_bridge.ros.parameters.given import settings_from_values
     from sdf_pose_bridge.ros.publishing.topic_names import state_topics_from_settings
     parameters = parsed(*arguments, '--node')['/**']['ros__parameters']

@@ -11,8 +11,8 @@ import urdf_texts
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.export.frame_change import write_frame_change
-from sdf_pose_bridge.export.loaded_scene import fingerprint_of_scene, LoadRequest
-from sdf_pose_bridge.export.loading import loaded_scene_from_request
+from sdf_pose_bridge.export.published_scene import fingerprint_of_scene, LoadRequest
+from sdf_pose_bridge.export.scene_from_request import loaded_scene_from_request
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.tf.tree import TfOptions
 

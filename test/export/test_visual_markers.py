@@ -8,8 +8,8 @@ from tf_checks import model
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.export import visual_markers
-from sdf_pose_bridge.export.loaded_scene import fingerprint_of_scene, LoadRequest
-from sdf_pose_bridge.export.loading import loaded_scene_from_request
+from sdf_pose_bridge.export.published_scene import fingerprint_of_scene, LoadRequest
+from sdf_pose_bridge.export.scene_from_request import loaded_scene_from_request
 from sdf_pose_bridge.export.visual_markers import markers_from_text, visual_markers_from_scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import resource_finder

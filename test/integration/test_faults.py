@@ -224,8 +224,8 @@ def assert_answers_or_is_gone(bridge, listener, service):
 
 UNABLE_TO_PUBLISH = """
 import sys
-from sdf_pose_bridge.ros.scene_reader import SceneReader
-reader = SceneReader()
+from sdf_pose_bridge.ros.file_process import FileProcess
+reader = FileProcess()
 from sdf_pose_bridge.ros.node.process import run
 from sdf_pose_bridge.ros.publishing.published_frames import PublishedFrames
 
@@ -268,8 +268,8 @@ def test_a_publish_that_fails_after_the_swap_of_scenes_ends_the_bridge(
 
 TELLING = """
 import sys
-from sdf_pose_bridge.ros.scene_reader import SceneReader
-reader = SceneReader()
+from sdf_pose_bridge.ros.file_process import FileProcess
+reader = FileProcess()
 from sdf_pose_bridge.ros.following.joint_states import JointStates
 from sdf_pose_bridge.ros.node.process import run
 from sdf_pose_bridge.ros.publishing.published_frames import PublishedFrames
@@ -300,8 +300,8 @@ def test_the_joints_of_a_new_scene_are_followed_before_it_is_published(start_bri
 
 WITH_DEFECT = """
 import sys
-from sdf_pose_bridge.ros.scene_reader import SceneReader
-reader = SceneReader()
+from sdf_pose_bridge.ros.file_process import FileProcess
+reader = FileProcess()
 from sdf_pose_bridge.ros.following import state_topic
 from sdf_pose_bridge.ros.node.process import run
 
@@ -367,10 +367,10 @@ def test_without_the_waiting_process_the_frames_stay_and_one_line_says_what_to_d
 LIMITED = """
 import sys
 from sdf_pose_bridge.process_limits import Allowance
-from sdf_pose_bridge.ros import scene_reader
+from sdf_pose_bridge.ros import file_process
 from sdf_pose_bridge.ros.node.bridge import main
 
-scene_reader.FOR_FILES = Allowance({})
+file_process.FOR_FILES = Allowance({})
 sys.exit(main())
 """
 """The node with smaller limits than those for which the smallest file would be very large."""

@@ -10,7 +10,7 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 from rclpy.executors import SingleThreadedExecutor
 
-from sdf_pose_bridge.ros.scene_reader import SceneReader
+from sdf_pose_bridge.ros.file_process import FileProcess
 
 
 @pytest.fixture
@@ -63,6 +63,6 @@ def beside():
 @pytest.fixture(scope='session')
 def reader():
     """Return a reader of files."""
-    found = SceneReader()
+    found = FileProcess()
     yield found
     found.close()

@@ -14,8 +14,8 @@ from tf_checks import tree_of
 import urdf_texts as urdf
 
 from sdf_pose_bridge.errors import LoadError, ParsingError, Place, SdfError
-from sdf_pose_bridge.export.loaded_scene import LoadRequest
-from sdf_pose_bridge.export.loading import loaded_scene_from_request
+from sdf_pose_bridge.export.published_scene import LoadRequest
+from sdf_pose_bridge.export.scene_from_request import loaded_scene_from_request
 from sdf_pose_bridge.problems import MOST_PROBLEMS
 from sdf_pose_bridge.ros import log_lines
 from sdf_pose_bridge.ros.log_lines import (

@@ -30,7 +30,7 @@ from sdf_pose_bridge.ros.background import result_from_executor, result_from_thr
 from sdf_pose_bridge.ros.cdr import NANOSECONDS, NO_ROWS, Rows
 from sdf_pose_bridge.ros.following.message_failures import MessageFailures
 from sdf_pose_bridge.ros.following.message_problems import MessageProblems
-from sdf_pose_bridge.ros.following.period import Period, union
+from sdf_pose_bridge.ros.following.publish_period import PublishPeriod, union
 from sdf_pose_bridge.ros.following.state_messages import Effect, KnownEffects, Message, StateSource
 from sdf_pose_bridge.ros.following.state_sources import StateSources
 from sdf_pose_bridge.ros.following.state_topic import StateTopic
@@ -115,7 +115,7 @@ class JointStates:
         self._now_ns = 0
         self._is_simulated = self._has_jumped = False
         self._has_moved = self._has_reported_missing = False
-        self._period = Period()
+        self._period = PublishPeriod()
         self._processed: set[StateSource] = set()
         self._start_frames()
         self._end_period()

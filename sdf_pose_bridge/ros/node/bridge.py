@@ -54,9 +54,9 @@ def main(args: Sequence[str] | None = None, program: str = 'bridge') -> int:
     # Resolve functions of ROS's libraries at their first call, as programs in C++ do.
     sys.setdlopenflags(os.RTLD_LAZY)
     try:
-        from sdf_pose_bridge.ros.scene_reader import SceneReader
+        from sdf_pose_bridge.ros.file_process import FileProcess
         # It forks a process, so it comes before ROS, which starts threads when it is imported.
-        reader = SceneReader()
+        reader = FileProcess()
         from sdf_pose_bridge.ros.node.process import run
         return run(list(sys.argv if args is None else args), program, reader)
     except ImportError as error:

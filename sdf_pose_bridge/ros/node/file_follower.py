@@ -8,7 +8,7 @@ from collections.abc import Iterable
 import math
 import time
 
-from sdf_pose_bridge.export.loaded_scene import is_temporary, LoadedScene
+from sdf_pose_bridge.export.published_scene import is_temporary, LoadedScene
 from sdf_pose_bridge.file_watcher import FileWatcher
 
 RETRY_PERIOD_S = 1.0

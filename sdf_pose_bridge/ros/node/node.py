@@ -21,10 +21,11 @@ from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
 from sdf_pose_bridge.errors import AddressError, SdfError
-from sdf_pose_bridge.export.loaded_scene import LoadedScene, LoadRequest
-from sdf_pose_bridge.export.loading import files_behind_error
+from sdf_pose_bridge.export.published_scene import LoadedScene, LoadRequest
+from sdf_pose_bridge.export.scene_from_request import files_behind_error
 from sdf_pose_bridge.problems import by_message
 from sdf_pose_bridge.ros.background import Periodic, result_from_executor, Worker
+from sdf_pose_bridge.ros.file_process import FileProcess, loaded_scene
 from sdf_pose_bridge.ros.following.other_publishers import OtherPublishers, OTHERS_PERIOD_S
 from sdf_pose_bridge.ros.log_lines import (
     line_about_frames,
@@ -45,7 +46,6 @@ from sdf_pose_bridge.ros.publishing.diagnostics import Diagnostics, PERIOD_S
 from sdf_pose_bridge.ros.publishing.published_frames import frames_from_scene, PublishedFrames
 from sdf_pose_bridge.ros.publishing.publishers import SwitchedPublisher, Topic
 from sdf_pose_bridge.ros.publishing.state_report import StateReport
-from sdf_pose_bridge.ros.scene_reader import loaded_scene, SceneReader
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge_interfaces.srv import SetPose
 
@@ -87,7 +87,7 @@ class SdfPoseBridge:
 
     def __init__(
         self, node: Node, loader: Worker, frames: PublishedFrames, settings: Settings,
-        loaded: LoadedScene, reader: SceneReader, parameter_services: ParameterServices,
+        loaded: LoadedScene, reader: FileProcess, parameter_services: ParameterServices,
     ) -> None:
         self._node = node
         self._logger = node.get_logger()

@@ -28,6 +28,7 @@ from rclpy.utilities import remove_ros_args
 
 from sdf_pose_bridge.errors import AddressError, SdfError
 from sdf_pose_bridge.ros.background import Worker
+from sdf_pose_bridge.ros.file_process import FileProcess, loaded_scene
 from sdf_pose_bridge.ros.log_lines import (
     line_from_text,
     lines_from_error,
@@ -46,7 +47,6 @@ from sdf_pose_bridge.ros.parameters.rules import AUTO_KINDS
 from sdf_pose_bridge.ros.publishing.published_frames import PublishedFrames, TF_STATIC
 from sdf_pose_bridge.ros.publishing.publishers import Publishers
 from sdf_pose_bridge.ros.publishing.topic_names import check_number_of_topics
-from sdf_pose_bridge.ros.scene_reader import loaded_scene, SceneReader
 import sdf_pose_bridge_interfaces  # noqa: F401 - if it is missing, say so before anything else
 
 STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
@@ -112,7 +112,7 @@ PROGRAMS = {'bridge': BRIDGE, 'robot_state_publisher': ROBOT_STATE_PUBLISHER}
 """The executables by their names."""
 
 
-def run(args: Sequence[str], program_name: str, reader: SceneReader) -> int:
+def run(args: Sequence[str], program_name: str, reader: FileProcess) -> int:
     """
     Run the node until a signal ends it.
 
@@ -158,7 +158,7 @@ def run(args: Sequence[str], program_name: str, reader: SceneReader) -> int:
 
 
 def _exit_code_from_node(
-    node: Node, program: Program, reader: SceneReader, parameter_services: ParameterServices,
+    node: Node, program: Program, reader: FileProcess, parameter_services: ParameterServices,
     file: str = '',
 ) -> int:
     _log_warnings(node, warnings_about_unknown_parameters(node, program.known_elsewhere))

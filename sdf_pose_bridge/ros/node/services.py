@@ -22,7 +22,7 @@ from sdf_pose_bridge.errors import (
     SdfError,
     UnknownFrameError,
 )
-from sdf_pose_bridge.export.loaded_scene import fingerprint_of_scene, LoadedScene
+from sdf_pose_bridge.export.published_scene import fingerprint_of_scene, LoadedScene
 from sdf_pose_bridge.geometry.formats import (
     converted_poses,
     converted_rotations,
@@ -155,7 +155,7 @@ def set_pose(
     Write the measured pose of a frame into its file, unless it is a dry run.
 
     :param loaded: the published scene.
-    :param call: calls a function in another process, as ``SceneReader.calling``, and returns its
+    :param call: calls a function in another process, as ``FileProcess.calling``, and returns its
         result.
     :return: the response with the change; the changed file is valid and can be published.
     :raises SdfError: if the request is not valid, no change of a single pose gives this pose, or

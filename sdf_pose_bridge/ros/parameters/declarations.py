@@ -17,7 +17,7 @@ from typing import Any, Generic, TypeVar
 
 from rclpy.parameter import Parameter
 
-from sdf_pose_bridge.export.loaded_scene import DescriptionFormat, LoadRequest
+from sdf_pose_bridge.export.published_scene import DescriptionFormat, LoadRequest
 from sdf_pose_bridge.ros.cdr import POSE_TYPES
 from sdf_pose_bridge.ros.parameters import rules
 from sdf_pose_bridge.sdformat.limits import MissingInclude

@@ -14,7 +14,7 @@ import datetime
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 
-from sdf_pose_bridge.export.loaded_scene import LoadedScene
+from sdf_pose_bridge.export.published_scene import LoadedScene
 from sdf_pose_bridge.ros.log_lines import count_in_words, line_from_text
 from sdf_pose_bridge.ros.publishing.publishers import SwitchedPublisher, Topic
 from sdf_pose_bridge.ros.publishing.state_report import StateReport

@@ -20,7 +20,7 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from tf2_msgs.msg import TFMessage
 
-from sdf_pose_bridge.export.loaded_scene import LoadedScene
+from sdf_pose_bridge.export.published_scene import LoadedScene
 from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.ros.background import result_from_executor
 from sdf_pose_bridge.ros.cdr import Rows, StampedRecords

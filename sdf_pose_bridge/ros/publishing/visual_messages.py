@@ -18,7 +18,7 @@ from std_msgs.msg import ColorRGBA, Header
 from visualization_msgs.msg import Marker, MarkerArray
 
 from sdf_pose_bridge.errors import SdfWarning
-from sdf_pose_bridge.export.loaded_scene import LoadRequest
+from sdf_pose_bridge.export.published_scene import LoadRequest
 from sdf_pose_bridge.export.visual_markers import markers_from_text, VisualMarker
 
 

@@ -11,11 +11,11 @@ from rclpy.node import Node
 from visualization_msgs.msg import MarkerArray
 
 from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.export.loaded_scene import fingerprint_of_scene, LoadedScene
+from sdf_pose_bridge.export.published_scene import fingerprint_of_scene, LoadedScene
+from sdf_pose_bridge.ros.file_process import FileProcess
 from sdf_pose_bridge.ros.log_lines import line_from_text, lines_from_error, lines_from_warnings
 from sdf_pose_bridge.ros.publishing.publishers import SwitchedPublisher, Topic
 from sdf_pose_bridge.ros.publishing.visual_messages import serialized_markers_from_text
-from sdf_pose_bridge.ros.scene_reader import SceneReader
 
 WAITING_S = 0.02
 """Time in s between two looks whether another process has made the markers."""
@@ -31,7 +31,7 @@ class VisualPublisher:
     :param reader: reads shapes.
     """
 
-    def __init__(self, node: Node, reader: SceneReader, loaded: LoadedScene) -> None:
+    def __init__(self, node: Node, reader: FileProcess, loaded: LoadedScene) -> None:
         self._logger = node.get_logger()
         self._reader = reader
         self._loaded = loaded

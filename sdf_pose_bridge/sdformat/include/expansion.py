@@ -33,12 +33,12 @@ from sdf_pose_bridge.errors import (
 from sdf_pose_bridge.names import is_reserved, ROOT_FRAME, SEPARATOR
 from sdf_pose_bridge.printed_text import listed, shortened
 from sdf_pose_bridge.sdformat.documents import Document, document_from_file
+from sdf_pose_bridge.sdformat.element_reader import ElementReader
 from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.include.manifests import model_file_from_directory, ModelFile
 from sdf_pose_bridge.sdformat.include.merge import merge, ModelByItself, ModelCheck
 from sdf_pose_bridge.sdformat.include.params import apply_params, definition_in_tree, TOP_TAGS
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
-from sdf_pose_bridge.sdformat.reader import ElementReader
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.values import TRUE_TEXTS
 from sdf_pose_bridge.sdformat.xml_tree import (

@@ -20,6 +20,7 @@ from sdf_pose_bridge.errors import (
 )
 from sdf_pose_bridge.geometry.pose_attributes import FORMAT_ATTRIBUTES
 from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.sdformat.element_reader import ElementReader
 from sdf_pose_bridge.sdformat.grammar import (
     Definition,
     definition_of,
@@ -29,7 +30,6 @@ from sdf_pose_bridge.sdformat.grammar import (
 )
 from sdf_pose_bridge.sdformat.include.element_ids import ElementIds, hint_for_id
 from sdf_pose_bridge.sdformat.joints import DEFAULT_END
-from sdf_pose_bridge.sdformat.reader import ElementReader
 from sdf_pose_bridge.sdformat.sources import PARAMS_TAG, Sources
 from sdf_pose_bridge.sdformat.xml_tree import (
     child_elements,

@@ -17,8 +17,8 @@ from sdf_texts import world_file
 from simulation_interfaces.msg import EntityState, Result
 from simulation_interfaces.srv import GetEntitiesStates
 
-from sdf_pose_bridge.export.loaded_scene import LoadRequest
-from sdf_pose_bridge.export.loading import loaded_scene_from_request
+from sdf_pose_bridge.export.published_scene import LoadRequest
+from sdf_pose_bridge.export.scene_from_request import loaded_scene_from_request
 from sdf_pose_bridge.ros.following import simulator as module
 from sdf_pose_bridge.ros.following.simulator import Simulator
 from sdf_pose_bridge.ros.log_lines import WARNING_PERIOD_S

@@ -11,8 +11,8 @@ from rclpy.context import Context
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from sdf_texts import world_file
 
-from sdf_pose_bridge.export.loaded_scene import LoadRequest
-from sdf_pose_bridge.export.loading import loaded_scene_from_request
+from sdf_pose_bridge.export.published_scene import LoadRequest
+from sdf_pose_bridge.export.scene_from_request import loaded_scene_from_request
 from sdf_pose_bridge.ros.following.state_sources import StateSources
 from sdf_pose_bridge.ros.parameters.given import settings_from_values
 from sdf_pose_bridge.ros.publishing.topic_names import StateTopics

@@ -5,8 +5,8 @@
 import pytest
 
 from sdf_pose_bridge.errors import Place, SdfError, TemporaryReadError
-from sdf_pose_bridge.export.loaded_scene import LoadRequest
-from sdf_pose_bridge.export.loading import files_behind_error, loaded_scene_from_request
+from sdf_pose_bridge.export.published_scene import LoadRequest
+from sdf_pose_bridge.export.scene_from_request import files_behind_error, loaded_scene_from_request
 from sdf_pose_bridge.ros.node import file_follower
 from sdf_pose_bridge.ros.node.file_follower import FileFollower
 

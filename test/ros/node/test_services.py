@@ -21,8 +21,8 @@ from sdf_texts import joint, model_file, posed, world_file
 
 from sdf_pose_bridge import load
 from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.export.loaded_scene import LoadRequest
-from sdf_pose_bridge.export.loading import loaded_scene_from_request
+from sdf_pose_bridge.export.published_scene import LoadRequest
+from sdf_pose_bridge.export.scene_from_request import loaded_scene_from_request
 from sdf_pose_bridge.ros.node import services
 from sdf_pose_bridge.ros.node.services import (
     answer_to_convert_poses,

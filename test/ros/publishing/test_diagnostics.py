@@ -5,7 +5,7 @@
 from diagnostic_msgs.msg import DiagnosticStatus
 import pytest
 
-from sdf_pose_bridge.export.loading import loaded_scene_from_request
+from sdf_pose_bridge.export.scene_from_request import loaded_scene_from_request
 from sdf_pose_bridge.ros.parameters.given import settings_from_node
 from sdf_pose_bridge.ros.publishing.diagnostics import Diagnostics, status_from_scene
 from sdf_pose_bridge.ros.publishing.state_report import StateReport

@@ -19,8 +19,8 @@ from tf2_msgs.msg import TFMessage
 from tf_checks import tree_of
 
 from sdf_pose_bridge import load_text
-from sdf_pose_bridge.export.loaded_scene import LoadRequest
-from sdf_pose_bridge.export.loading import loaded_scene_from_request
+from sdf_pose_bridge.export.published_scene import LoadRequest
+from sdf_pose_bridge.export.scene_from_request import loaded_scene_from_request
 from sdf_pose_bridge.ros.following.joint_states import JointStates
 from sdf_pose_bridge.ros.parameters.given import settings_from_values
 from sdf_pose_bridge.ros.publishing.published_frames import frames_from_scene, PublishedFrames

@@ -14,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from sdf_texts import joint, model_file, world_file
 
-from sdf_pose_bridge.export.loading import loaded_scene_from_request
+from sdf_pose_bridge.export.scene_from_request import loaded_scene_from_request
 from sdf_pose_bridge.ros.parameters.declarations import DECLARATIONS, SettingsError
 from sdf_pose_bridge.ros.parameters.given import settings_from_values
 from sdf_pose_bridge.ros.publishing import topic_names

@@ -9,8 +9,8 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from sdf_texts import world_file, write_files
 from visualization_msgs.msg import Marker, MarkerArray
 
-from sdf_pose_bridge.export.loaded_scene import LoadRequest
-from sdf_pose_bridge.export.loading import loaded_scene_from_request
+from sdf_pose_bridge.export.published_scene import LoadRequest
+from sdf_pose_bridge.export.scene_from_request import loaded_scene_from_request
 from sdf_pose_bridge.ros.publishing.visuals import VisualPublisher
 
 SDF = """<sdf version="1.10"><model name="m"><link name="l">

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TypeVar
 
-from sdf_pose_bridge.export.loaded_scene import LoadedScene, LoadRequest
+from sdf_pose_bridge.export.published_scene import LoadedScene, LoadRequest
 from sdf_pose_bridge.limited_process import Call, LimitedProcess
 from sdf_pose_bridge.problems import errors_of_process
 from sdf_pose_bridge.process_limits import FOR_FILES
@@ -23,12 +23,12 @@ def _prepare() -> None:
 
 
 def loaded_scene(request: LoadRequest) -> LoadedScene:
-    """Do what ``export.loading.loaded_scene_from_request`` does; the node need not import it."""
-    from sdf_pose_bridge.export.loading import loaded_scene_from_request
+    """Do what ``loaded_scene_from_request`` does, which the node need not import."""
+    from sdf_pose_bridge.export.scene_from_request import loaded_scene_from_request
     return loaded_scene_from_request(request)
 
 
-class SceneReader(LimitedProcess):
+class FileProcess(LimitedProcess):
     """
     Reads files, each in a process of its own that is forked from this one.
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from sdf_texts import joint, model_file, world_file
 
-from sdf_pose_bridge.export.loaded_scene import fingerprint_of_scene, LoadRequest
-from sdf_pose_bridge.export.loading import loaded_scene_from_request
+from sdf_pose_bridge.export.published_scene import fingerprint_of_scene, LoadRequest
+from sdf_pose_bridge.export.scene_from_request import loaded_scene_from_request
 from sdf_pose_bridge.tf.tree import TfOptions
 
 GOOD = '<model name="m"><link name="l"><pose>1 0 0 0 0 0</pose></link><frame name="f"/></model>'

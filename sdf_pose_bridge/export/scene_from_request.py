@@ -12,7 +12,7 @@ import time
 from lxml import etree
 
 from sdf_pose_bridge.errors import AddressError, Place, SdfError, SdfWarning, UriLookupError
-from sdf_pose_bridge.export.loaded_scene import DescriptionFormat, LoadedScene, LoadRequest
+from sdf_pose_bridge.export.published_scene import DescriptionFormat, LoadedScene, LoadRequest
 from sdf_pose_bridge.export.urdf_robot import robot_from_scene
 from sdf_pose_bridge.export.urdf_text import UrdfWriter
 from sdf_pose_bridge.scene.loading import load_text

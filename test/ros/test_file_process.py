@@ -16,10 +16,10 @@ from sdf_pose_bridge.errors import (
     TemporaryReadError,
 )
 from sdf_pose_bridge.export.frame_change import write_frame_change
-from sdf_pose_bridge.export.loaded_scene import fingerprint_of_scene, is_temporary, LoadRequest
+from sdf_pose_bridge.export.published_scene import fingerprint_of_scene, is_temporary, LoadRequest
 from sdf_pose_bridge.export.visual_markers import markers_from_text
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.ros.scene_reader import loaded_scene
+from sdf_pose_bridge.ros.file_process import loaded_scene
 
 CRASH = """import faulthandler, signal
 faulthandler.disable()

@@ -20,7 +20,7 @@ from sdf_pose_bridge.ros.cdr import NO_ROWS, Rows
 from sdf_pose_bridge.ros.following.state_messages import StateSource
 
 
-class Period:
+class PublishPeriod:
     """A period, or the time until the next one begins."""
 
     def __init__(self) -> None:

@@ -14,7 +14,7 @@ import pytest
 from sdf_texts import model_file
 
 from sdf_pose_bridge import SdfError
-from sdf_pose_bridge.cli.loading import load_file, scene_of
+from sdf_pose_bridge.cli.input_files import load_file, scene_of
 
 
 def test_a_terminal_is_read_to_its_end(on_terminal):

@@ -7,14 +7,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from sdf_pose_bridge.ros.following.period import Period
+from sdf_pose_bridge.ros.following.publish_period import PublishPeriod
 
 OLD, NEW = SimpleNamespace(last_ns=5), SimpleNamespace(last_ns=8)
 
 
 @pytest.fixture
 def period():
-    period = Period()
+    period = PublishPeriod()
     period.end([OLD, NEW])
     period.begin(20, [OLD, NEW])
     return period

@@ -9,8 +9,8 @@ import pytest
 from sdf_texts import joint, model_file, world_file
 
 from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.export.loaded_scene import DescriptionFormat, LoadRequest
-from sdf_pose_bridge.export.loading import loaded_scene_from_request, unicode_text
+from sdf_pose_bridge.export.published_scene import DescriptionFormat, LoadRequest
+from sdf_pose_bridge.export.scene_from_request import loaded_scene_from_request, unicode_text
 from sdf_pose_bridge.tf.frame_ids import FrameNaming
 from sdf_pose_bridge.tf.tree import TfOptions
 

@@ -3,8 +3,8 @@
 """
 A file or a text that was read, with its TF tree.
 
-:mod:`~sdf_pose_bridge.export.loading` makes it, in another process than that of the node. So
-nothing that parses a file is imported here.
+:mod:`~sdf_pose_bridge.export.scene_from_request` makes it, in another process than that of the
+node. So nothing that parses a file is imported here.
 """
 
 from __future__ import annotations
