@@ -126,7 +126,7 @@ def transforms_of_100_joints() -> Iterator[tuple[Function, Function | None]]:
     from rclpy.serialization import serialize_message
 
     from sdf_pose_bridge.ros.cdr import JOINT_STATE
-    from sdf_pose_bridge.ros.following.state_messages import KnownEffects
+    from sdf_pose_bridge.ros.following.state_messages import KnownStreams
     from sdf_pose_bridge.ros.following.state_topic import StateTopic, TopicKey
     from sdf_pose_bridge.ros.publishing.published_frames import PublishedFrames
     from sdf_pose_bridge.ros.publishing.publishers import Publishers
@@ -139,7 +139,7 @@ def transforms_of_100_joints() -> Iterator[tuple[Function, Function | None]]:
         frames = PublishedFrames(Publishers(ros), tree, positions, {}).moving
         assert frames is not None
         topic = StateTopic(ros, TopicKey('joint_states', '', JOINT_STATE))
-        effects = KnownEffects(frames, PoseLookup(scene, tree, positions))
+        streams = KnownStreams(frames, PoseLookup(scene, tree, positions))
         broadcaster = JointBroadcaster(ros, 100, '/tf_of_counterpart')
         messages = joint_states(100)
         # The counterpart gets objects, which rclpy would have to make first.
@@ -147,10 +147,10 @@ def transforms_of_100_joints() -> Iterator[tuple[Function, Function | None]]:
             [serialize_message(each) for each in itertools.islice(messages, 1000)])
 
         def publish() -> None:
-            message, = topic.read(next(serialized), effects)
+            message, = topic.read(next(serialized), streams)
             positions.update(
-                message.effect.selection, message.values, message.stamp_ns, ignore_stamps=True)
-            frames.publish_tf(frames.stamp(effects.rows(message.effect), message.stamp_ns))
+                message.stream.selection, message.values, message.stamp_ns, ignore_stamps=True)
+            frames.publish_tf(frames.stamp(streams.rows(message.stream), message.stamp_ns))
 
         yield publish, lambda: broadcaster.take(next(messages))
 

@@ -9,7 +9,7 @@ from sdf_texts import joint, plugin, world_file
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.ros.cdr import StampedPose
 from sdf_pose_bridge.ros.following.model_poses import messages_from_poses
-from sdf_pose_bridge.ros.following.state_messages import KnownEffects, StateSource
+from sdf_pose_bridge.ros.following.state_messages import KnownStreams, StateSource
 from sdf_pose_bridge.ros.publishing.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishing.publishers import Publishers
 from sdf_pose_bridge.tf.joint_positions import JointPositions
@@ -42,20 +42,20 @@ class Models:
             use_joint_states=True, follows_models=True, frame_prefix='p/'))
         self.positions = JointPositions(scene, tree.moving.motion)
         self.frames = PublishedFrames(Publishers(node), tree, self.positions, {}).moving
-        self.effects = KnownEffects(
+        self.streams = KnownStreams(
             self.frames, PoseLookup(scene, tree, self.positions), [re.compile('.*/odom')],
             placement)
         self.source = StateSource(node, '/poses')
 
     def read(self, child='a', frame_id='', pose=POSE, stamp_ns=5, model=None):
         """Return the messages of a pose, for a model or for the one that the child names."""
-        dof = None if model is None else self.effects.models[model]
+        dof = None if model is None else self.streams.models[model]
         return messages_from_poses(
-            [StampedPose(stamp_ns, frame_id, child, pose)], self.source, self.effects, dof,
-            self.effects.placements)
+            [StampedPose(stamp_ns, frame_id, child, pose)], self.source, self.streams, dof,
+            self.streams.placements)
 
     def moved(self, **fields):
         """Return the name of the model that a pose moves, and its x and y in the root."""
         (message,) = self.read(**fields)
-        (dof,) = message.effect.selection.dofs
-        return self.positions.names[dof], *self.effects.values(message)[0, :2].tolist()
+        (dof,) = message.stream.selection.dofs
+        return self.positions.names[dof], *self.streams.values(message)[0, :2].tolist()

@@ -31,7 +31,12 @@ from sdf_pose_bridge.ros.cdr import NANOSECONDS, NO_ROWS, Rows
 from sdf_pose_bridge.ros.following.message_failures import MessageFailures
 from sdf_pose_bridge.ros.following.message_problems import MessageProblems
 from sdf_pose_bridge.ros.following.publish_period import PublishPeriod, union
-from sdf_pose_bridge.ros.following.state_messages import Effect, KnownEffects, Message, StateSource
+from sdf_pose_bridge.ros.following.state_messages import (
+    KnownStreams,
+    Message,
+    MessageStream,
+    StateSource,
+)
 from sdf_pose_bridge.ros.following.state_sources import StateSources
 from sdf_pose_bridge.ros.following.state_topic import StateTopic
 from sdf_pose_bridge.ros.following.wait_set import WaitSet
@@ -248,7 +253,7 @@ class JointStates:
 
     def _start_frames(self) -> None:
         frames, lookup, _, settings = self._target
-        self._effects = KnownEffects(
+        self._streams = KnownStreams(
             frames, lookup, settings.model_pose_frames, settings.model_pose_placement)
         self._problems = MessageProblems(frames)
         self._period.forget()
@@ -273,14 +278,14 @@ class JointStates:
         :param at_once: whether to publish what they move, and to leave the others as soon as a
             period has begun. Otherwise it waits; of those with the same names the newest counts.
         """
-        newest: dict[Effect, Message] = {}
+        newest: dict[MessageStream, Message] = {}
         # Messages may come faster than they are taken. Sources take turns, so that one with too
         # many messages does not delay the others.
         ends_at = time.monotonic() + TOPICS_PERIOD_S
         while sources and time.monotonic() < ends_at:
             sources = [
                 each for each in sources
-                if self._failures.attempt([each], True, each.take, self._effects, newest)]
+                if self._failures.attempt([each], True, each.take, self._streams, newest)]
             if at_once:
                 self._publish(self._move_all(newest))
                 newest.clear()
@@ -289,9 +294,9 @@ class JointStates:
                     return
         self._period.add(self._move_all(newest))
 
-    def _move_all(self, newest: Mapping[Effect, Message]) -> Rows:
+    def _move_all(self, newest: Mapping[MessageStream, Message]) -> Rows:
         return union([
-            self._failures.attempt([each.effect.source], NO_ROWS, self._move, each)
+            self._failures.attempt([each.stream.source], NO_ROWS, self._move, each)
             for each in newest.values()])
 
     def _follow_clock(self) -> None:
@@ -306,25 +311,25 @@ class JointStates:
             self._period.forget()
 
     def _move(self, message: Message) -> Rows:
-        target, effect, source = self._target, message.effect, message.effect.source
+        target, stream, source = self._target, message.stream, message.stream.source
         positions, ignores_stamps = target.frames.positions, target.settings.ignore_timestamp
         stamp_ns = message.stamp_ns or self._node.get_clock().now().nanoseconds
         if self._has_jumped and stamp_ns > self._now_ns:
             return NO_ROWS  # it was sent before that
         try:
-            values = self._effects.values(message)
+            values = self._streams.values(message)
         except SdfError as error:
             reason = str(error)
             source.warn('frame', lambda: f'a pose from {source.name} is ignored: {reason}')
             return NO_ROWS
         source.last_ns = self._now_ns
         source.warn_about_invalid(positions.update(
-            effect.selection, values, stamp_ns, ignore_stamps=ignores_stamps))
+            stream.selection, values, stamp_ns, ignore_stamps=ignores_stamps))
         if self._has_reported_missing and not any(positions.unreported()):
             self._has_reported_missing = False
             models = ' and models' if positions.free_models else ''
             self._logger.info(f'all joints{models} have been reported now')
-        rows = self._effects.rows(effect)
+        rows = self._streams.rows(stream)
         if len(rows) and not self._has_moved:
             self._has_moved = True
             count = len(target.sources)
@@ -333,7 +338,7 @@ class JointStates:
                 f'following {count} sources; the first message is on {source.name}')
         moved = target.frames.stamp(rows, stamp_ns, ignore_stamps=ignores_stamps)
         if len(rows) and not len(moved):
-            self._problems.note_lateness(effect, stamp_ns, self._now_ns)
+            self._problems.note_lateness(stream, stamp_ns, self._now_ns)
         self._processed.add(source)
         return moved
 
@@ -376,7 +381,7 @@ class JointStates:
 
     def _look_at_publishers(self) -> None:
         self._due[self._look_at_publishers] = time.monotonic() + PUBLISHERS_PERIOD_S
-        self._problems.look_at_publishers(self._effects.known)
+        self._problems.look_at_publishers(self._streams.known)
 
     def _report(self) -> StateReport:
         target = self._target

@@ -10,7 +10,7 @@ from functools import partial
 import time
 
 from sdf_pose_bridge.ros.cdr import NANOSECONDS
-from sdf_pose_bridge.ros.following.state_messages import Effect, StateSource
+from sdf_pose_bridge.ros.following.state_messages import MessageStream, StateSource
 from sdf_pose_bridge.ros.log_lines import names_in_line
 from sdf_pose_bridge.ros.publishing.published_frames import MovingTopics
 
@@ -31,24 +31,24 @@ class MessageProblems:
 
     def __init__(self, frames: MovingTopics) -> None:
         self._frames, self._positions = frames, frames.positions
-        self._late: dict[StateSource, Effect] = {}
+        self._late: dict[StateSource, MessageStream] = {}
         self._lines_about_publishers: list[str] = []
 
-    def note_lateness(self, effect: Effect, stamp_ns: int, now_ns: int) -> None:
+    def note_lateness(self, stream: MessageStream, stamp_ns: int, now_ns: int) -> None:
         """
         Report messages whose stamps are old, if nothing has moved their transforms for a time.
 
-        :param effect: that of one that moves nothing.
+        :param stream: that of a message that moves nothing.
         :param stamp_ns: its stamp, or the time of the node, in nanoseconds.
         :param now_ns: the time of the node; 0 before the first message on ``/clock``.
         """
-        source, now = effect.source, time.monotonic()
-        last_ns = self._last_ns(effect)
-        if last_ns - stamp_ns < _LEAST_AGE_NS or last_ns != effect.late_after_ns:
+        source, now = stream.source, time.monotonic()
+        last_ns = self._last_ns(stream)
+        if last_ns - stamp_ns < _LEAST_AGE_NS or last_ns != stream.late_after_ns:
             # Others may move them, such as a second publisher with newer stamps.
-            effect.late_since, effect.late_after_ns, effect.late_line = now, last_ns, ''
-        elif now - effect.late_since > LATE_S and not self._is_late(source):
-            first = self._positions.names[effect.selection.changed[0]]
+            stream.late_since, stream.late_after_ns, stream.late_line = now, last_ns, ''
+        elif now - stream.late_since > LATE_S and not self._is_late(source):
+            first = self._positions.names[stream.selection.changed[0]]
             line = (
                 f'messages from {source.name} move nothing, for example {names_in_line([first])}: '
                 f'their stamps are {(last_ns - stamp_ns) / NANOSECONDS:.3f} s older than the last '
@@ -57,7 +57,7 @@ class MessageProblems:
                 'messages move nothing, as their stamps have gone back; with use_sim_time, this '
                 'needs /clock, so play the bag with "ros2 bag play --clock"')
             is_new = all(each.late_line != line for each in self._late.values())
-            self._late[source], effect.late_line = effect, line
+            self._late[source], stream.late_line = stream, line
             if is_new:
                 source.warn('stamps', lambda: line)
 
@@ -71,23 +71,23 @@ class MessageProblems:
         return late is not None and late.late_line != '' and (
             self._last_ns(late) == late.late_after_ns)
 
-    def _last_ns(self, effect: Effect) -> int:
-        return int(self._frames.last_stamps_ns(effect.rows).min())
+    def _last_ns(self, stream: MessageStream) -> int:
+        return int(self._frames.last_stamps_ns(stream.rows).min())
 
-    def look_at_publishers(self, effects: Collection[Effect]) -> None:
+    def look_at_publishers(self, streams: Collection[MessageStream]) -> None:
         """
         Report joints and models about which several publishers send messages at once.
 
         These use several topics for two periods, as a publisher may replace another one in the
         first; or their messages contradict each other on one topic, which has several publishers.
 
-        :param effects: those of all messages that are known.
+        :param streams: those of all messages that are known.
         """
         sources: dict[int, dict[str, StateSource]] = {}
         found: dict[str, tuple[int, StateSource]] = {}
-        lists = Counter(each.source for each in effects if each.counts.messages)
-        for effect in effects:
-            source, dofs, counts = effect.source, effect.selection.dofs.tolist(), effect.counts
+        lists = Counter(each.source for each in streams if each.counts.messages)
+        for stream in streams:
+            source, dofs, counts = stream.source, stream.selection.dofs.tolist(), stream.counts
             if dofs and counts.have_several_publishers:
                 nodes = source.publishers()
                 # Values alone prove little, so each list of names may have its own publisher.

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Find the effects of poses of models, and report poses that cannot be used."""
+"""Assign poses of models to streams, and report poses that cannot be used."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import numpy as np
 from sdf_pose_bridge.geometry.poses import Pose, pose_product
 from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.ros.cdr import LONGEST_READ_S, StampedPose
-from sdf_pose_bridge.ros.following.state_messages import KnownEffects, Message, StateSource
+from sdf_pose_bridge.ros.following.state_messages import KnownStreams, Message, StateSource
 from sdf_pose_bridge.ros.log_lines import names_in_line
 from sdf_pose_bridge.tf.joint_motion import NO_DOF
 from sdf_pose_bridge.tf.joint_positions import LARGEST_POSITION
@@ -35,16 +35,16 @@ class _Group(NamedTuple):
 
 
 def messages_from_poses(
-    poses: Iterable[StampedPose], source: StateSource, effects: KnownEffects,
+    poses: Iterable[StampedPose], source: StateSource, streams: KnownStreams,
     dof: int | None = None, placements: Mapping[int, str] | None = None,
 ) -> list[Message]:
     """
-    Find the effects of poses; log those that cannot be used.
+    Assign poses to streams of messages; log those that cannot be used.
 
     :param dof: the free model whose poses they are; None if their child frame ids name it.
     :param placements: the frames that they are of, by free models, whatever child frame ids say.
     """
-    doubts, effects.doubts = effects.doubts, []
+    doubts, streams.doubts = streams.doubts, []
     for line in doubts:
         source.warn(line, partial(str, line))
     # Poses of one stamp in one frame become one message.
@@ -53,18 +53,18 @@ def messages_from_poses(
     invalid = list[tuple[float, ...]]()
     ends_at = time.thread_time() + LONGEST_READ_S
     for stamp_ns, frame_id, child, numbers in poses:
-        model, placed = effects.placed_frame(child, dof)
-        sender = dof if dof is not None else effects.models_of_odometry.get(
+        model, placed = streams.placed_frame(child, dof)
+        sender = dof if dof is not None else streams.models_of_odometry.get(
             (source.name, frame_id), model)
-        odometry = None if sender is None else effects.odometry_in(frame_id, sender, source)
+        odometry = None if sender is None else streams.odometry_in(frame_id, sender, source)
         if odometry:
             model = sender
         if model is None:
             # PosePublisher may send visuals and collisions, too, each in what contains it.
-            if not (child.startswith(f'{frame_id}/') and effects.lookup.knows(frame_id)):
+            if not (child.startswith(f'{frame_id}/') and streams.lookup.knows(frame_id)):
                 unknown.append(child)
             continue
-        found = ('', NO_DOF) if odometry else effects.pose_frame(frame_id, ends_at, source)
+        found = ('', NO_DOF) if odometry else streams.pose_frame(frame_id, ends_at, source)
         if found is None:
             pass  # there is time when the next message comes
         elif found[0] is None:
@@ -92,7 +92,7 @@ def messages_from_poses(
             'no model has this name, or it is static, or a joint connects it to another body')
         source.warn_once('models', unknown, lambda: (
             f'{source.name} has poses of {names_in_line(unknown)}, which are ignored: {reason}'
-            f'{"" if source.model else effects.hint(unknown[0])}'))
+            f'{"" if source.model else streams.hint(unknown[0])}'))
     if others:
         source.warn_once('frames', others, lambda: (
             f'{source.name} has poses in {names_in_line(others)}, which are ignored: there is '
@@ -108,7 +108,7 @@ def messages_from_poses(
             f'or a position that is not finite or beyond {LARGEST_POSITION:g}'))
     return [
         Message(
-            effects.of_models(tuple(sorted(group)), source),
+            streams.of_models(tuple(sorted(group)), source),
             np.array([group[dof] for dof in sorted(group)]), *key[:3])
         for key, group in _in_order(groups)]
 

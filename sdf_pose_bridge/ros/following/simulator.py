@@ -21,7 +21,7 @@ from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.nearest_names import hint_from_names
 from sdf_pose_bridge.ros.cdr import NANOSECONDS, StampedPose
 from sdf_pose_bridge.ros.following.model_poses import messages_from_poses
-from sdf_pose_bridge.ros.following.state_messages import KnownEffects, Message, StateSource
+from sdf_pose_bridge.ros.following.state_messages import KnownStreams, Message, StateSource
 from sdf_pose_bridge.ros.log_lines import count_in_words, names_in_line
 from sdf_pose_bridge.ros.parameters.declarations import Settings
 from sdf_pose_bridge.ros.parameters.rules import MODEL_FIELD, MOST_CHARACTERS
@@ -237,17 +237,17 @@ class Simulator(StateSource):
     def has_answers(self) -> bool:  # noqa: D102 - as in the base class
         return bool(self._answers)
 
-    def messages(self, effects: KnownEffects) -> Sequence[Message] | None:  # noqa: D102 - as above
+    def messages(self, streams: KnownStreams) -> Sequence[Message] | None:  # noqa: D102 - as above
         if not self._answers:
             return None
         begin_s = time.thread_time()
-        poses = self._poses(self._answers.popleft(), effects)
-        self._add_nested(poses, effects)
-        messages = messages_from_poses(poses.values(), self, effects)
+        poses = self._poses(self._answers.popleft(), streams)
+        self._add_nested(poses, streams)
+        messages = messages_from_poses(poses.values(), self, streams)
         self._cost_of_poses_s = time.thread_time() - begin_s
         return messages
 
-    def _poses(self, answer: Any, effects: KnownEffects) -> dict[str, StampedPose]:
+    def _poses(self, answer: Any, streams: KnownStreams) -> dict[str, StampedPose]:
         """Return the poses of free models and other bodies by their names."""
         poses, others = {}, []
         for entity, state in zip(answer.entities, answer.states, strict=True):
@@ -257,7 +257,7 @@ class Simulator(StateSource):
                     f'{self.name} has an entity without a name, which is left out'))
             elif not name and entity not in self._known and len(entity) <= MOST_CHARACTERS:
                 others.append(entity)
-                is_body = effects.models.get(entity) == self._positions.others.get(entity, NO_DOF)
+                is_body = streams.models.get(entity) == self._positions.others.get(entity, NO_DOF)
                 name = entity if is_body else ''
             if name:
                 stamp, position, quat = (
@@ -268,14 +268,14 @@ class Simulator(StateSource):
         self.others = tuple(sorted(others)[:MOST_OTHERS])
         return poses
 
-    def _add_nested(self, poses: dict[str, StampedPose], effects: KnownEffects) -> None:
+    def _add_nested(self, poses: dict[str, StampedPose], streams: KnownStreams) -> None:
         """Add nested models without a pose, which keep their places; note what else is missing."""
         positions, kept = self._positions, []
         stamp_ns = max((each.stamp_ns for each in poses.values()), default=0)
-        given = effects.dofs_of_others(self)
+        given = streams.dofs_of_others(self)
         missing = [
             each for each in positions.free_models
-            if each not in poses and effects.models.get(each) not in given]
+            if each not in poses and streams.models.get(each) not in given]
         for model in missing:
             outer, place = positions.nested_models.get(model, ('', Pose()))
             if outer in poses or (outer and outer not in positions.free_models):

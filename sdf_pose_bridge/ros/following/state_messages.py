@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Messages about joints and models: their sources, and the effect of each of them."""
+"""Messages about joints and models: their sources, and streams with the same names."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ MOST_BYTES = 4_000_000
 """Largest size of all names and rows that are kept. A message has a quarter of it at most."""
 
 BYTES_OF_OBJECTS = 2_000
-"""Size that is counted for the objects of an effect, in addition to its names and rows."""
+"""Size that is counted for the objects of a stream, in addition to its names and rows."""
 
 _BYTES_OF_MODEL = 200
-"""Size that is counted for each model of an effect, and for each frame id."""
+"""Size that is counted for each model of a stream, and for each frame id."""
 
 @dataclass(eq=False)
-class Effect:
-    """The degrees of freedom and the transforms that messages with the same names change."""
+class MessageStream:
+    """Messages of one source with the same names, and what they change."""
 
     source: StateSource
     selection: Selection
@@ -63,9 +63,9 @@ class Effect:
 
 
 class Message(NamedTuple):
-    """The fields of a message that are read, and its effect."""
+    """The fields of a message that are read, and its stream."""
 
-    effect: Effect
+    stream: MessageStream
     values: Floats
     """A position for each name; or the poses of models, shape (k, 7)."""
     stamp_ns: int
@@ -107,24 +107,24 @@ class StateSource(RareWarnings):
         """Whether messages wait that no subscription has."""
         return False
 
-    def messages(self, effects: KnownEffects) -> Sequence[Message] | None:
-        """Take a message; return what it has for each of its effects, or None if there is none."""
+    def messages(self, streams: KnownStreams) -> Sequence[Message] | None:
+        """Take a message; return its part of each stream, or None if there is none."""
         raise NotImplementedError
 
-    def take(self, effects: KnownEffects, newest: dict[Effect, Message]) -> bool:
+    def take(self, streams: KnownStreams, newest: dict[MessageStream, Message]) -> bool:
         """
         Take a message.
 
-        :param newest: gets it, unless the one with the same effect there is newer.
+        :param newest: gets it, unless the one of the same stream there is newer.
         :return: whether there was one.
         """
-        messages = self.messages(effects)
+        messages = self.messages(streams)
         for message in messages or ():
-            effect = message.effect
-            effect.counts.add(message.stamp_ns, message.values, self.number)
-            known = newest.get(effect, message)
+            stream = message.stream
+            stream.counts.add(message.stamp_ns, message.values, self.number)
+            known = newest.get(stream, message)
             if not 0 < message.stamp_ns < known.stamp_ns:
-                newest[effect] = message
+                newest[stream] = message
         return messages is not None
 
     def publishers(self) -> list[str]:
@@ -145,9 +145,9 @@ class StateSource(RareWarnings):
             'frame by model_pose_frames; no plugin in the file says where it is', once=True)
 
 
-class KnownEffects:
+class KnownStreams:
     """
-    The effects of messages from all sources, kept for messages with the same names.
+    The streams of messages from all sources.
 
     :param frames: the frames that messages move.
     :param lookup: looks up frames in which poses of models are given.
@@ -165,7 +165,7 @@ class KnownEffects:
         self._root_patterns = root_patterns
         self._pose_frames: dict[str, tuple[str | None, int]] = {}
         # By the source, and the names of joints or the degrees of freedom of models.
-        self._effects: dict[tuple[StateSource, tuple[object, ...]], Effect] = {}
+        self._streams: dict[tuple[StateSource, tuple[object, ...]], MessageStream] = {}
         tree, motion = frames.tree, frames.frames.motion
         self._roots = ('', tree.root_frame, tree.world)
         count, free_models = len(motion.dofs), frames.positions.free_models
@@ -205,18 +205,18 @@ class KnownEffects:
         if placement and not self.placements:
             self.doubts.append(
                 f'model_pose_placement: no model that can move has {names_in_line([placement])}')
-        self.last: dict[StateSource, Effect] = {}
-        """The effect of the last message on each topic of joint states, while cached."""
+        self.last: dict[StateSource, MessageStream] = {}
+        """The stream of the last message on each topic of joint states, while cached."""
         self._size = 0
 
-    def of_joints(self, names: SerializedNames, source: StateSource) -> Effect:
-        """Return the effect of positions of joints; log unknown and ambiguous names."""
-        found = self._effects.get((source, names.names))
+    def of_joints(self, names: SerializedNames, source: StateSource) -> MessageStream:
+        """Return the stream of positions of joints; log unknown and ambiguous names."""
+        found = self._streams.get((source, names.names))
         if found is None:
             model = source.model
-            found = Effect(source, self._positions.selection(names.names, model), names)
+            found = MessageStream(source, self._positions.selection(names.names, model), names)
             self._make_room(BYTES_OF_OBJECTS + len(names.data) + 16 * len(names.names))
-            self._effects[source, names.names] = found
+            self._streams[source, names.names] = found
             unknown = [each for each in self._positions.unknown(names.names, model)
                        if each not in self._positions.fixed_joints]
             if unknown:
@@ -227,34 +227,34 @@ class KnownEffects:
         self.last[source] = found
         return found
 
-    def of_models(self, dofs: tuple[int, ...], source: StateSource) -> Effect:
-        """Return the effect of poses of free models."""
-        found = self._effects.get((source, dofs))
+    def of_models(self, dofs: tuple[int, ...], source: StateSource) -> MessageStream:
+        """Return the stream of poses of free models."""
+        found = self._streams.get((source, dofs))
         if found is None:
             self._make_room(BYTES_OF_OBJECTS + _BYTES_OF_MODEL * len(dofs))
-            found = self._effects[source, dofs] = Effect(
+            found = self._streams[source, dofs] = MessageStream(
                 source, self._positions.selection_of_models(dofs))
         return found
 
     @property
-    def known(self) -> Collection[Effect]:
-        """The effects that are kept."""
-        return self._effects.values()
+    def known(self) -> Collection[MessageStream]:
+        """The streams that are kept."""
+        return self._streams.values()
 
     def dofs_of_others(self, source: StateSource) -> set[int]:
         """Return the degrees of freedom about which other sources have sent messages."""
         return {
-            dof for effect in self._effects.values() if effect.source is not source
-            for dof in effect.selection.changed}
+            dof for stream in self._streams.values() if stream.source is not source
+            for dof in stream.selection.changed}
 
-    def rows(self, effect: Effect) -> Rows:
+    def rows(self, stream: MessageStream) -> Rows:
         """Return the transforms that a message moves, and those of what is where the file is."""
         reported_count = self._positions.reported_count
-        if effect.reported_count != reported_count and effect.selection.changed:
-            effect.reported_count = reported_count
-            effect.rows = self._frames.rows_from_dofs(effect.selection.changed)
-            self._make_room(effect.rows.nbytes)
-        return effect.rows
+        if stream.reported_count != reported_count and stream.selection.changed:
+            stream.reported_count = reported_count
+            stream.rows = self._frames.rows_from_dofs(stream.selection.changed)
+            self._make_room(stream.rows.nbytes)
+        return stream.rows
 
     def placed_frame(self, child: str, dof: int | None) -> tuple[int | None, str]:
         """
@@ -332,7 +332,7 @@ class KnownEffects:
         """
         values = message.values
         if message.placed:
-            model = self._scoped_names[message.effect.selection.changed[0]]
+            model = self._scoped_names[message.stream.selection.changed[0]]
             values = pose_products(
                 values, np.array([self.lookup.pose(model, message.placed).pose]))
         if message.frame_id:
@@ -343,7 +343,7 @@ class KnownEffects:
         """Forget everything if it would be too much."""
         self._size += size
         if self._size > MOST_BYTES:
-            self._effects.clear()
+            self._streams.clear()
             self._pose_frames.clear()
             self.last.clear()
             self._size = size

@@ -20,7 +20,7 @@ from sdf_pose_bridge.ros.cdr import (
     PoseType,
 )
 from sdf_pose_bridge.ros.following.model_poses import messages_from_poses
-from sdf_pose_bridge.ros.following.state_messages import KnownEffects, Message, StateSource
+from sdf_pose_bridge.ros.following.state_messages import KnownStreams, Message, StateSource
 from sdf_pose_bridge.ros.following.wait_set import NoExecutor, take_message
 
 MOST_WAITING = 100
@@ -62,39 +62,39 @@ class StateTopic(StateSource):
                 QoSPolicyKind.RELIABILITY, QoSPolicyKind.DURABILITY)))
         super().__init__(node, self.subscription.topic_name, key.model)
 
-    def messages(self, effects: KnownEffects) -> Sequence[Message] | None:  # noqa: D102 - as above
+    def messages(self, streams: KnownStreams) -> Sequence[Message] | None:  # noqa: D102 - as above
         taken = take_message(self.subscription)
         if taken is None:
             return None
         data, self.number = taken
-        return self.read(data, effects)
+        return self.read(data, streams)
 
-    def read(self, data: bytes, effects: KnownEffects) -> Sequence[Message]:
+    def read(self, data: bytes, streams: KnownStreams) -> Sequence[Message]:
         """Read a serialized message; return nothing, with a warning, if it cannot be used."""
         try:
             if self._pose_type is None:
-                return (self._joint_states(data, effects),)
-            return self._poses(data, self._pose_type, effects)
+                return (self._joint_states(data, streams),)
+            return self._poses(data, self._pose_type, streams)
         except ValueError as error:
             reason = str(error)
             self.warn('message', lambda: f'a message on {self.name} is ignored: {reason}')
             return ()
 
-    def _joint_states(self, data: bytes, effects: KnownEffects) -> Message:
-        effect = effects.last.get(self)
+    def _joint_states(self, data: bytes, streams: KnownStreams) -> Message:
+        stream = streams.last.get(self)
         stamp_ns, names, positions = joint_state_from_bytes(
-            data, None if effect is None else effect.names)
-        if effect is None or names is not effect.names:
-            effect = effects.of_joints(names, self)
-        return Message(effect, positions, stamp_ns)
+            data, None if stream is None else stream.names)
+        if stream is None or names is not stream.names:
+            stream = streams.of_joints(names, self)
+        return Message(stream, positions, stamp_ns)
 
-    def _poses(self, data: bytes, pose_type: PoseType, effects: KnownEffects) -> Sequence[Message]:
+    def _poses(self, data: bytes, pose_type: PoseType, streams: KnownStreams) -> Sequence[Message]:
         dof = None
         if not pose_type.is_sequence:
-            dof = effects.models.get(self.model) if self.model else effects.only_model
+            dof = streams.models.get(self.model) if self.model else streams.only_model
             if dof is None and not pose_type.has_child:
                 msg = ('no single model is meant; {model} in its entry of model_pose_topics '
                        'names one')
                 raise ValueError(msg)
         return messages_from_poses(
-            poses_from_bytes(data, pose_type), self, effects, dof, effects.placements)
+            poses_from_bytes(data, pose_type), self, streams, dof, streams.placements)

@@ -33,11 +33,11 @@ def look(make_node):
             for name, number, child in period:
                 source = sources[name]
                 source.number = number
-                source.messages = lambda effects, source=source, child=child: (
+                source.messages = lambda streams, source=source, child=child: (
                     messages_from_poses(
-                        [StampedPose(5, '', child, POSE)], source, effects))
-                source.take(models.effects, {})
-            problems.look_at_publishers(models.effects.known)
+                        [StampedPose(5, '', child, POSE)], source, streams))
+                source.take(models.streams, {})
+            problems.look_at_publishers(models.streams.known)
         return problems.lines([])
     return look
 

@@ -30,9 +30,9 @@ def models(make_node):
     ('a', 'a'), ('p/a', 'a'), ('a::b', 'a/b'), ('a/b', 'a/b'), ('p/a/b', 'a/b')])
 def test_models_have_their_names_and_their_frame_ids(models, child, name):
     (message,) = models.read(child)
-    assert [models.positions.names[dof] for dof in message.effect.selection.dofs] == [name]
+    assert [models.positions.names[dof] for dof in message.stream.selection.dofs] == [name]
     assert message.values.tolist() == [list(POSE)]
-    assert models.read(child)[0].effect is message.effect
+    assert models.read(child)[0].stream is message.stream
 
 
 @pytest.mark.parametrize('frame_id', ['', 'world', 'w', 'robot/odom'])
@@ -44,7 +44,7 @@ def test_frames_that_mean_the_root(models, frame_id):
 def test_a_model_is_placed_before_poses_in_its_frame(models, frame_id):
     messages = messages_from_poses(
         [StampedPose(5, 'p/a', 'a/b', POSE), StampedPose(5, frame_id, 'a', POSE)], models.source,
-        models.effects)
+        models.streams)
     assert [each.frame_id for each in messages] == [frame_id, 'p/a']
 
 
@@ -164,7 +164,7 @@ def test_the_odometry_of_a_model_in_another_one_moves_both(models, source):
 def test_a_pose_on_a_topic_for_no_single_model_is_ignored(models, capfd):
     topic = StateTopic(
         models.source._node, TopicKey('/p', '', 'geometry_msgs/msg/PoseStamped'))
-    assert topic.read(serialize_message(PoseStamped()), models.effects) == ()
+    assert topic.read(serialize_message(PoseStamped()), models.streams) == ()
     assert 'no single model is meant' in capfd.readouterr().err
 
 
@@ -176,12 +176,12 @@ def test_a_placement_that_no_model_has_is_reported(make_node, capfd):
 def test_poses_of_links_say_nothing_unless_the_pose_of_the_model_is_there(models, capfd):
     links = [StampedPose(5, 'p/a', child, POSE) for child in ('p/a/l', 'p/a/k')]
     model = StampedPose(5, 'w', 'a', POSE)
-    (message,) = messages_from_poses([*links, model], models.source, models.effects)
+    (message,) = messages_from_poses([*links, model], models.source, models.streams)
     assert message.values.tolist() == [list(POSE)]
     words = 'PosePublisher sends poses of models with <publish_model_pose>'
     assert words not in capfd.readouterr().err
-    assert not messages_from_poses(links, models.source, models.effects)
-    assert not messages_from_poses(links, models.source, models.effects)
+    assert not messages_from_poses(links, models.source, models.streams)
+    assert not messages_from_poses(links, models.source, models.streams)
     assert capfd.readouterr().err.count(words) == 1
 
 
@@ -203,13 +203,13 @@ def test_a_quaternion_that_is_nearly_unit_is_made_unit(models):
 
 def test_poses_in_a_frame_of_the_tree_are_composed_with_it(models):
     (message,) = models.read(frame_id='p/fixed/l')
-    assert models.effects.values(message).tolist() == [[1.0, 4.0, 3.0, 0.0, 0.0, 0.0, 1.0]]
+    assert models.streams.values(message).tolist() == [[1.0, 4.0, 3.0, 0.0, 0.0, 0.0, 1.0]]
 
 
 def test_a_frame_without_a_pose_of_its_own_is_refused(models):
     (message,) = models.read('a::b', 'p/a/l')
     with pytest.raises(JointPositionError, match='depends on the pose of model "a"'):
-        models.effects.values(message)
+        models.streams.values(message)
 
 
 def test_frame_ids_are_looked_up_once_and_for_a_limited_time_in_a_message(models, monkeypatch):
@@ -222,17 +222,17 @@ def test_frame_ids_are_looked_up_once_and_for_a_limited_time_in_a_message(models
         return name == 'p/fixed/l'
 
     monkeypatch.setattr('time.thread_time', lambda: now)
-    models.effects.lookup.knows = knows
+    models.streams.lookup.knows = knows
     frame_ids = [*'abcdefg', 'p/fixed/l']
     poses = [StampedPose(5, each, 'a', POSE) for each in frame_ids]
-    found = [messages_from_poses(poses, models.source, models.effects) for _ in range(4)]
+    found = [messages_from_poses(poses, models.source, models.streams) for _ in range(4)]
     assert looked_up == frame_ids
     assert [len(each) for each in found] == [0, 0, 1, 1]
 
 
 def test_the_meanings_of_frame_ids_take_a_limited_number_of_bytes(models):
     looked_up = []
-    models.effects.lookup.knows = looked_up.append
+    models.streams.lookup.knows = looked_up.append
     for number in range(2 * MOST_BYTES // 100_000):
         models.read(frame_id=f'{number} {"x" * 100_000}')
     count = len(looked_up)
@@ -248,13 +248,13 @@ def test_poses_in_one_frame_with_one_stamp_are_one_message(models):
         for x, child, stamp_ns, frame_id in (
             (1.0, 'a::b', 5, ''), (2.0, 'a', 5, 'w'), (3.0, 'a', 6, ''), (4.0, 'a', 5, ''),
             (5.0, 'a::b', 5, 'p/fixed/l'), (6.0, 'a', 5, 'p/fixed/l'))]
-    messages = messages_from_poses(poses, models.source, models.effects)
+    messages = messages_from_poses(poses, models.source, models.streams)
     names = models.positions.names
     found = [
-        ([names[dof] for dof in each.effect.selection.dofs], each.values[:, 0].tolist(),
+        ([names[dof] for dof in each.stream.selection.dofs], each.values[:, 0].tolist(),
          each.stamp_ns) for each in messages]
     assert found == [(['a', 'a/b'], [4.0, 1.0], 5), (['a'], [3.0], 6),
         (['a', 'a/b'], [6.0, 5.0], 5)]
-    assert models.effects.values(messages[2])[:, :2].tolist() == [[6.0, 4.0], [5.0, 4.0]]
-    again = messages_from_poses(poses[1::-1], models.source, models.effects)
-    assert again[0].effect is messages[0].effect
+    assert models.streams.values(messages[2])[:, :2].tolist() == [[6.0, 4.0], [5.0, 4.0]]
+    again = messages_from_poses(poses[1::-1], models.source, models.streams)
+    assert again[0].stream is messages[0].stream

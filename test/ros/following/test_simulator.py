@@ -184,9 +184,9 @@ def answer(node, simulator):
         simulator._answers.append(SimpleNamespace(entities=names, states=[state] * len(names)))
         return {
             models.positions.names[dof]: (*values[:2], message.frame_id, message.stamp_ns)
-            for message in simulator.messages(models.effects)
+            for message in simulator.messages(models.streams)
             for dof, values in zip(
-                message.effect.selection.changed, message.values.tolist(), strict=True)}
+                message.stream.selection.changed, message.values.tolist(), strict=True)}
     answer.models = models
     return answer
 

@@ -12,7 +12,7 @@ from std_msgs.msg import Header
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.ros.cdr import JOINT_STATE, SerializedNames
-from sdf_pose_bridge.ros.following.state_messages import BYTES_OF_OBJECTS, KnownEffects, MOST_BYTES
+from sdf_pose_bridge.ros.following.state_messages import BYTES_OF_OBJECTS, KnownStreams, MOST_BYTES
 from sdf_pose_bridge.ros.following.state_topic import StateTopic, TopicKey
 from sdf_pose_bridge.ros.publishing.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishing.publishers import Publishers
@@ -37,7 +37,7 @@ class Robots:
         tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
         self._node = node
         self.positions = JointPositions(scene, tree.moving.motion, unreported=unreported)
-        self.effects = KnownEffects(
+        self.streams = KnownStreams(
             PublishedFrames(Publishers(node), tree, self.positions, {}).moving,
             PoseLookup(scene, tree, self.positions))
 
@@ -56,11 +56,11 @@ def read(robots):
     topic = robots.topic()
 
     def read(data):
-        messages = topic.read(data, robots.effects)
+        messages = topic.read(data, robots.streams)
         if not messages:
             return None
         (message,) = messages
-        names = [robots.positions.names[dof] for dof in message.effect.selection.dofs]
+        names = [robots.positions.names[dof] for dof in message.stream.selection.dofs]
         return names, message.values.tolist(), message.stamp_ns
     return read
 
@@ -106,12 +106,12 @@ def test_names_are_kept_for_a_topic_whatever_aligns_them(robots):
     first, second = robots.topic(), robots.topic('a/k')
     data = joint_state(turn=0.5, grip=0.25)
     begin = data.index(b'turn\0') + 5
-    effects = [
-        topic.read(each, robots.effects)[0].effect for topic, each in (
+    streams = [
+        topic.read(each, robots.streams)[0].stream for topic, each in (
             (first, data), (first, data[:begin] + b'abc' + data[begin + 3:]),
             (first, joint_state(turn=0.5)), (first, data), (second, data))]
-    kept = effects[0]
-    assert [each is kept for each in effects] == [True, True, False, True, False]
+    kept = streams[0]
+    assert [each is kept for each in streams] == [True, True, False, True, False]
 
 
 @pytest.mark.parametrize('unreported', list(UnreportedJoints))
@@ -121,9 +121,9 @@ def test_names_move_their_transforms_and_those_of_joints_at_zero(make_node, unre
 
     def rows(*names):
         data = joint_state(**dict.fromkeys(names, 0.0))
-        (message,) = topic.read(data, robots.effects)
-        robots.positions.update(message.effect.selection, message.values, 5)
-        return robots.effects.rows(message.effect).tolist()
+        (message,) = topic.read(data, robots.streams)
+        robots.positions.update(message.stream.selection, message.values, 5)
+        return robots.streams.rows(message.stream).tolist()
 
     at_zero = unreported is UnreportedJoints.ZERO
     assert rows('a/turn', 'x') == ([0, 1, 2, 3] if at_zero else [0])
@@ -135,13 +135,13 @@ def test_names_move_their_transforms_and_those_of_joints_at_zero(make_node, unre
 
 @pytest.mark.parametrize('size', [MOST_BYTES // 10, 1])
 def test_all_names_together_take_a_limited_number_of_bytes(robots, size):
-    topic, effects = robots.topic(), set()
+    topic, streams = robots.topic(), set()
     count = 2 * MOST_BYTES // (size + BYTES_OF_OBJECTS)
-    robots.effects.of_joints(SerializedNames(('turn',), b''), robots.topic('a/k'))
+    robots.streams.of_joints(SerializedNames(('turn',), b''), robots.topic('a/k'))
     for _ in range(2):
         for number in range(count):
             names = SerializedNames((str(number) * size,), b'x' * size)
-            effects.add(robots.effects.of_joints(names, topic))
-            assert robots.effects.last[topic].names is names
-    assert len(effects) > 1.5 * count
-    assert set(robots.effects.last.values()) <= set(robots.effects.known)
+            streams.add(robots.streams.of_joints(names, topic))
+            assert robots.streams.last[topic].names is names
+    assert len(streams) > 1.5 * count
+    assert set(robots.streams.last.values()) <= set(robots.streams.known)
