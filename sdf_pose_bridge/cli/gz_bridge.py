@@ -15,13 +15,15 @@ from sdf_pose_bridge.cli.arguments import add_file_arguments, add_output_argumen
 from sdf_pose_bridge.cli.input_files import doubts_about_frames, scene_of, STANDARD_INPUT
 from sdf_pose_bridge.cli.printing import CommandError, print_problems, write_text
 from sdf_pose_bridge.errors import SdfError, SdfWarning
-from sdf_pose_bridge.export.gazebo_bridge import node_parameters
+from sdf_pose_bridge.export.gazebo_bridge import followed_topics, node_parameters
+from sdf_pose_bridge.export.published_scene import LoadRequest
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.nearest_names import hint_from_names
 from sdf_pose_bridge.printed_text import printable
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.gazebo_topics import GROUPS, ROS_TYPES
+from sdf_pose_bridge.sdformat.limits import MissingInclude
 from sdf_pose_bridge.tf.bridged_topics import bridged_topics, BridgedTopic
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
@@ -67,14 +69,14 @@ def run(options: argparse.Namespace) -> int:
     print_problems((), (*doubts_about_frames(scene, tf_options), *doubts, *_doubts_about_ids(
         topics, scene_of_gazebo, scene, tf_options._replace(kinds=None))), sys.stderr)
     if options.node:
-        parameters = {
-            'sdf_file': '' if path == STANDARD_INPUT else str(Path(path).absolute()),
-            'resource_paths': [str(Path(each).absolute()) for each in options.resource_paths],
-            'on_missing_include': 'skip' if options.skip_missing else '',
-            **node_parameters(topics, scene, world)}
+        request = LoadRequest(
+            '' if path == STANDARD_INPUT else str(Path(path).absolute()), '',
+            tuple(Path(each).absolute() for each in options.resource_paths),
+            MissingInclude.SKIP if options.skip_missing else MissingInclude.ERROR,
+            model_name='' if scene.world_names else scene.names[1])
+        parameters = node_parameters(request, followed_topics(topics, world))
         lines = ['/**:', '  ros__parameters:', *(
-            f'    {name}: {_yaml_from_value(value)}' for name, value in parameters.items()
-            if value)]
+            f'    {name}: {_yaml_from_value(value)}' for name, value in parameters.items())]
     else:
         lines = [line for each in topics for line in _lines(each)]
     write_text('\n'.join(lines) + '\n', options.output, scene.files)
@@ -132,4 +134,5 @@ def _lines(bridged: BridgedTopic) -> Iterator[str]:
 
 def _yaml_from_value(value: object) -> str:
     # YAML has the escapes of JSON and of Python in double quotes.
-    return printable(json.dumps(value, ensure_ascii=False))
+    return printable(json.dumps(
+        value, ensure_ascii=False, default=lambda each: getattr(each, 'value', str(each))))

@@ -5,16 +5,35 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
-from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.export.published_scene import LoadRequest
 from sdf_pose_bridge.sdformat.gazebo_topics import GROUPS, is_true
 from sdf_pose_bridge.tf.bridged_topics import BridgedTopic
 
 
-def node_parameters(
-    topics: Sequence[BridgedTopic], scene: Scene, world: str = '',
-) -> dict[str, object]:
-    """Return the parameters with which the node follows topics, found with the same arguments."""
+class FollowedTopics(NamedTuple):
+    """Parameters of the node for the messages that it follows, with their default values."""
+
+    use_joint_states: bool = False
+    joint_states_topics: Sequence[str] = ('joint_states', '{model}/joint_states')
+    model_pose_topics: Sequence[str] = ()
+    model_pose_frames: Sequence[str] = ()
+
+
+def node_parameters(request: LoadRequest, followed: FollowedTopics) -> dict[str, object]:
+    """Return the parameters of the node that differ from their default values, by their names."""
+    return {'use_sim_time': True} | {
+        name: value for record in (request, followed) for name, value in record._asdict().items()
+        if value != record._field_defaults.get(name, '')}
+
+
+def followed_topics(topics: Sequence[BridgedTopic], world: str = '') -> FollowedTopics:
+    """
+    Choose the topics that the node follows.
+
+    :param world: the world in Gazebo, for a model file.
+    """
     joints = {each.pattern for each in topics if each.topic.group == 'joints'}
     sources = sorted(
         (each for each in topics if each.places_model),
@@ -30,10 +49,8 @@ def node_parameters(
     poses = {each.ros_name if each.pattern in others else each.pattern
              for each in followed.values()}
     has_poses = any(each.topic.group == 'poses' for each in followed.values())
-    return {
-        'use_sim_time': True,
-        'model_name': '' if scene.world_names else scene.names[1],
-        'use_joint_states': bool(joints),
-        'joint_states_topics': sorted(joints),
-        'model_pose_topics': sorted(poses),
-        'model_pose_frames': [world] if world and has_poses else []}
+    return FollowedTopics(
+        use_joint_states=bool(joints),
+        joint_states_topics=tuple(sorted(joints)) or FollowedTopics().joint_states_topics,
+        model_pose_topics=tuple(sorted(poses)),
+        model_pose_frames=(world,) if world and has_poses else ())

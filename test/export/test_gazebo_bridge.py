@@ -6,7 +6,8 @@ import pytest
 from sdf_texts import joint, JOINTS, model, model_file, plugin, world_file
 
 from sdf_pose_bridge import load_text
-from sdf_pose_bridge.export.gazebo_bridge import node_parameters
+from sdf_pose_bridge.export.gazebo_bridge import followed_topics, FollowedTopics, node_parameters
+from sdf_pose_bridge.export.published_scene import LoadRequest
 from sdf_pose_bridge.sdformat.gazebo_topics import GROUPS
 from sdf_pose_bridge.tf.bridged_topics import bridged_topics
 
@@ -14,9 +15,10 @@ from sdf_pose_bridge.tf.bridged_topics import bridged_topics
 def parameters_of(text, world='', name=''):
     """Return the topics of joint states and poses, and the frames of poses."""
     scene = load_text(text, plugins=True).with_model_name(name)
-    parameters = node_parameters(bridged_topics(scene, GROUPS, world), scene, world)
-    return [parameters[name] for name in (
-        'joint_states_topics', 'model_pose_topics', 'model_pose_frames')]
+    followed = followed_topics(bridged_topics(scene, GROUPS, world), world)
+    return [[*each] for each in (
+        followed.use_joint_states * followed.joint_states_topics,
+        followed.model_pose_topics, followed.model_pose_frames)]
 
 
 def test_one_pattern_is_for_all_robots():
@@ -92,7 +94,6 @@ def test_a_spawned_model():
     assert parameters_of(text.replace('true', 'false'), 'shop')[1:] == [[], []]
 
 
-def test_the_node_has_the_name_of_the_spawned_model_alone():
-    assert node_parameters([], load_text(world_file(model('a', ''))))['model_name'] == ''
-    spawned = load_text(model_file('<link name="l"/>')).with_model_name('m_2')
-    assert node_parameters([], spawned, 'shop')['model_name'] == 'm_2'
+def test_a_parameter_with_its_default_value_is_left_out():
+    assert node_parameters(LoadRequest('a.sdf', ''), FollowedTopics(use_joint_states=True)) == {
+        'use_sim_time': True, 'sdf_file': 'a.sdf', 'use_joint_states': True}

@@ -17,6 +17,7 @@ from typing import Any, Generic, TypeVar
 
 from rclpy.parameter import Parameter
 
+from sdf_pose_bridge.export.gazebo_bridge import FollowedTopics
 from sdf_pose_bridge.export.published_scene import DescriptionFormat, LoadRequest
 from sdf_pose_bridge.ros.cdr import POSE_TYPES
 from sdf_pose_bridge.ros.parameters import rules
@@ -29,6 +30,8 @@ from sdf_pose_bridge.tf.tree import DEFAULT_KINDS, TfOptions
 Value = str | bool | float | list[str]
 Setting = TypeVar('Setting')
 Choice = TypeVar('Choice', bound=enum.Enum)
+
+_FOLLOWED = FollowedTopics()
 
 class SettingsError(ValueError):
     """
@@ -241,12 +244,12 @@ class Settings:
         'its <optical_frame_id>, or like the camera with _optical appended.',
     )
     use_joint_states = _switch(
-        False,
+        _FOLLOWED.use_joint_states,
         'Makes moving joints follow the topic joint_states: their transforms are on /tf instead '
         'of /tf_static.',
     )
     joint_states_topics = Declaration(
-        ['joint_states', '{model}/joint_states'],
+        [*_FOLLOWED.joint_states_topics],
         'Topics of joint states, with use_joint_states. {model} stands for each top-level model '
         'of a world that has moving joints, and messages on its topic name joints of this model '
         'alone; {world} stands for the world.',
@@ -255,7 +258,7 @@ class Settings:
         rules.topic_patterns_setting, most_characters=rules.MOST_CHARACTERS,
     )
     model_pose_topics = Declaration(
-        [],
+        [*_FOLLOWED.model_pose_topics],
         'Topics of poses of models that move, with messages of '
         f'{", ".join(each.rpartition("/")[2] for each in POSE_TYPES)}. {{model}} stands for each '
         'model; TFMessage names models in its child frame ids. A pose is that of the model frame, '
@@ -265,7 +268,7 @@ class Settings:
         rules.optional_topic_patterns_setting, most_characters=rules.MOST_CHARACTERS,
     )
     model_pose_frames = Declaration(
-        [],
+        [*_FOLLOWED.model_pose_frames],
         'Frames in the headers of these messages that are the same as root_frame. Those of the '
         'odometry that plugins of Gazebo in the file send are known without it.',
         'glob patterns for frame ids, such as */odom',
@@ -360,10 +363,10 @@ class Settings:
 
     @property
     def load_request(self) -> LoadRequest:
-        """The request for a load with these settings."""
+        """The request for a load; parameters and its fields have the same names."""
+        names = {*LoadRequest._fields} - {'tf_options'}
         return LoadRequest(
-            self.sdf_file, self.robot_description, self.resource_paths, self.on_missing_include,
-            self.tf_options, self.unreported_joints, self.description_format, self.model_name)
+            tf_options=self.tf_options, **{name: self.values[name] for name in names})
 
 
 DECLARATIONS: dict[str, Declaration[Any]] = {

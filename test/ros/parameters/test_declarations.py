@@ -4,6 +4,8 @@
 
 import pytest
 
+from sdf_pose_bridge.export.gazebo_bridge import FollowedTopics
+from sdf_pose_bridge.export.published_scene import LoadRequest
 from sdf_pose_bridge.ros.parameters.declarations import Declaration, DECLARATIONS
 from sdf_pose_bridge.ros.parameters.given import settings_from_values
 from sdf_pose_bridge.tf.joint_positions import UnreportedJoints
@@ -18,6 +20,15 @@ def test_what_is_read_has_all_that_a_load_needs():
     assert request.source == 'cell.sdf'
     assert request.tf_options == TfOptions(kinds=None, frame_prefix='r/', use_joint_states=True)
     assert request.unreported_joints is UnreportedJoints.ZERO
+
+
+DERIVED = {'tf_options', 'follows_models', 'has_joint_links', 'others'}
+"""Fields that are made of several parameters, or of none."""
+
+
+@pytest.mark.parametrize('record', [TfOptions, LoadRequest, FollowedTopics])
+def test_each_field_of_a_record_is_a_parameter(record):
+    assert {*record._fields} - DERIVED <= DECLARATIONS.keys()
 
 
 @pytest.mark.parametrize('name', DECLARATIONS)
