@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Find the change of a file that moves an element to a pose.
+Find the change of a file that moves an element to a pose, and write that of a frame of the node.
 
 No rule of SDFormat is implemented here: the scene has the ``<pose>`` that places the element and
 its reference, and the new numbers are checked by reading the changed file. In URDF it is the
@@ -11,7 +11,7 @@ a caller gives are in this room or below it.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 import contextlib
 from functools import partial
 from typing import NamedTuple, TypeAlias
@@ -19,6 +19,8 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from sdf_pose_bridge.errors import Place, PoseNotSetError, SdfError
+from sdf_pose_bridge.export.published_scene import fingerprint_of_scene, LoadRequest
+from sdf_pose_bridge.export.scene_from_request import loaded_scene_from_request
 from sdf_pose_bridge.file_change import FileChange
 from sdf_pose_bridge.geometry.poses import (
     distance_and_angle,
@@ -33,7 +35,10 @@ from sdf_pose_bridge.printed_text import quoted_names
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.pose_writing import pose_text_from_file, PoseText
+from sdf_pose_bridge.tf.comparison import names_of_moved
+from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.lookup import PoseLookup
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
 _MOST_ATTEMPTS = 4
 
@@ -55,6 +60,18 @@ class PoseChange(NamedTuple):
     """The line of the pose, or of the element in which it is inserted."""
     scene: Scene
     """The scene with the new text."""
+
+
+class FrameChange(NamedTuple):
+    """A change that was written, or would be."""
+
+    file: str
+    """Its path."""
+    diff: str
+    line: int
+    """The line of the pose, or of the element in which it is inserted."""
+    moved_frames: list[str]
+    """The other frames that move."""
 
 
 def pose_change(
@@ -88,6 +105,45 @@ def pose_change(
             raise
     in_model = relative_pose(*measure(scene, model, element))
     return change(model, pose_product(asked, pose_inverse(in_model)))
+
+
+def write_frame_change(
+    request: LoadRequest, fingerprint: bytes, frame: str, asked: Pose, reference: str,
+    positions: JointPositions | None, dry_run: bool,  # noqa: FBT001 - called in another process
+) -> FrameChange:
+    """
+    Find and write the change of a file that moves a frame to a measured pose.
+
+    :param request: the request of the published scene, which has this fingerprint.
+    :param asked: the measured pose of the frame.
+    :param reference: the name of the frame in which it was measured; empty for the root frame.
+    :param positions: the positions of the joints at that time; None if they do not move.
+    :param dry_run: whether to write nothing.
+    :return: the change; the changed file is valid and can be published.
+    :raises SdfError: if no change of a single pose gives this pose, or the file cannot be written.
+    """
+    loaded = loaded_scene_from_request(request)
+    scene = loaded.scene
+    if fingerprint_of_scene(scene) != fingerprint:
+        msg = 'the file has changed since it was read'
+        raise PoseNotSetError(msg, Place(str(loaded.path)))
+
+    def scene_with(*, texts: Mapping[str, bytes]) -> Scene:
+        return loaded_scene_from_request(request, texts).scene
+
+    def lookup(scene: Scene) -> PoseLookup:
+        return PoseLookup(scene, tf_tree_from_scene(scene, request.tf_options), positions)
+
+    element, in_element = loaded.lookup.element(frame)
+    asked = pose_product(asked, pose_inverse(in_element))
+    change = pose_change(scene, element, asked, lookup, scene_with, relative_to=reference)
+    moved = set(names_of_moved(scene, change.scene))
+    elements = loaded.tree.elements.tolist()
+    if not dry_run:
+        change.file.write()
+    return FrameChange(change.file.path, change.file.diff, change.line, [
+        frame_id for frame_id, other in zip(loaded.tree.frame_ids, elements, strict=True)
+        if other not in (-1, element) and scene.names[other] in moved])
 
 
 def _change_of_own_pose(
@@ -207,22 +263,21 @@ def _change_of_origin(
     """Find the change of the ``<origin>`` of a joint of URDF that moves an element to a pose."""
     name = scene.own_name(element)
     scope = scene.names[element].removesuffix(name)
-    for origin in text.origins(name, is_included=scene.urdf_root is None):
+    for number, joint in text.joints_to_move(name, is_included=scene.urdf_root is None):
         # The link "world" is the frame of the model.
-        parent = scene.index(scope + origin.parent, world=scene.world_of(element)) if (
-            scene.has(scope + origin.parent)) else int(scene.parents[element])
+        parent = scene.index(scope + joint.parent, world=scene.world_of(element)) if (
+            scene.has(scope + joint.parent)) else int(scene.parents[element])
         with contextlib.suppress(PoseNotSetError):
             change: PoseChange = make(
-                parent, origin.pose, partial(text.with_origin, origin.element),
-                text.line(origin.element))
+                parent, joint.origin, partial(text.with_origin, number), text.line(number))
             break
     else:
         msg = f'this is URDF, and no <origin> of a joint in it puts "{scene.names[element]}" there'
         raise PoseNotSetError(msg, scene.place(element))
-    if not text.is_plain_urdf(origin.element):
+    if not text.is_plain_urdf(number):
         origin_text = change.file.new.decode(change.file.encoding).strip()
         msg = ('a pose of xacro, or in quat_xyzw, is not set; this one needs joint '
-               f'"{origin.joint}": {origin_text}')
+               f'"{joint.xml.get("name")}": {origin_text}')
         raise PoseNotSetError(msg, Place(change.file.path, change.line))
     return change
 

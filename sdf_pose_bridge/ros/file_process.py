@@ -18,7 +18,7 @@ _Result = TypeVar('_Result')
 
 def _prepare() -> None:
     """Import what reads files, while the node itself imports ROS."""
-    import sdf_pose_bridge.export.frame_change
+    import sdf_pose_bridge.export.pose_setting
     import sdf_pose_bridge.sdformat.include.expansion  # noqa: F401
 
 

@@ -14,7 +14,6 @@ from itertools import count
 import os
 from pathlib import Path
 import re
-from typing import NamedTuple
 
 from lxml import etree
 
@@ -28,7 +27,7 @@ from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.poses import pose_format_of, pose_from_text
 from sdf_pose_bridge.sdformat.sources import Sources
-from sdf_pose_bridge.sdformat.urdf.robot import robot_from_tree
+from sdf_pose_bridge.sdformat.urdf.robot import robot_from_tree, RobotJoint
 from sdf_pose_bridge.sdformat.urdf.values import pose_from_xyz_rpy
 from sdf_pose_bridge.sdformat.values import number_from_word
 from sdf_pose_bridge.sdformat.versions import Version, version_from_text
@@ -41,18 +40,6 @@ _WORD = re.compile(rb'[^ \t\n\r]+')
 _INDENTATION = re.compile(rb'\s*?(\r?\n[ \t]*)?(?=<)')
 _SAME_ROTATION = 1e-12
 _NO_BREAKS = bytes.maketrans(b'\r\n', b'  ')
-
-
-class Origin(NamedTuple):
-    """The ``<origin>`` of a joint of URDF."""
-
-    element: int
-    """Its number, or that of the joint if it has none."""
-    pose: Pose
-    parent: str
-    """The link that it is relative to."""
-    joint: str
-    """The name of the joint in the file."""
 
 
 class PoseText:
@@ -109,15 +96,15 @@ class PoseText:
             raise PoseNotSetError(msg, Place(self._path))
         return line - 1
 
-    def origins(self, name: str, *, is_included: bool) -> Iterator[Origin]:
-        """Find the origins in URDF that can move a link or joint, by its name in SDFormat."""
+    def joints_to_move(
+        self, name: str, *, is_included: bool) -> Iterator[tuple[int, RobotJoint]]:
+        """Find joints as a ``Robot`` of URDF does, with the elements for :meth:`with_origin`."""
         root, sources = self.elements[0], Sources()
         sources.add_path(self._path)
         sources.add_tree(self._path, root, {})
         for joint in robot_from_tree(root, sources, is_included=is_included).joints_to_move(name):
             origin = first_child(joint.xml, 'origin')
-            number = self.elements.index(joint.xml if origin is None else origin)
-            yield Origin(number, joint.origin, joint.parent, joint.xml.get('name', ''))
+            yield self.elements.index(joint.xml if origin is None else origin), joint
 
     def is_plain_urdf(self, element: int) -> bool:
         """Return whether neither xacro nor an attribute for a quaternion says the numbers."""

@@ -6,15 +6,19 @@ from functools import partial
 import re
 
 from matrices import assert_close
+import numpy as np
 import pytest
 from sdf_texts import fixed_joint, model_file, posed, world_file, write_files
 import urdf_texts
 
-from sdf_pose_bridge import load, Pose
-from sdf_pose_bridge.errors import PoseNotSetError
-from sdf_pose_bridge.export.pose_setting import pose_change
+from sdf_pose_bridge import load, load_text, Pose
+from sdf_pose_bridge.errors import PoseNotSetError, SdfError
+from sdf_pose_bridge.export.pose_setting import pose_change, write_frame_change
+from sdf_pose_bridge.export.published_scene import fingerprint_of_scene, LoadRequest
+from sdf_pose_bridge.export.scene_from_request import loaded_scene_from_request
 from sdf_pose_bridge.geometry.poses import canonical_relative_pose
 from sdf_pose_bridge.tf.lookup import lookup_from_scene
+from sdf_pose_bridge.tf.tree import TfOptions
 
 ASKED = Pose(0.5, -1.0, 2.0, 0.5, 0.5, 0.5, 0.5)
 MODEL = model_file(posed('link', 'a', '1 0 0 0 0 0') + posed('frame', 'f', '0 1 0 0 0 1', 'a'))
@@ -250,3 +254,87 @@ def test_joint_that_can_place_a_link(change, tmp_path, old, new, name, joint):
     robot = ROBOT if '7' not in new else ROBOT.replace('"base"', '"world"')
     write_files(tmp_path, m=robot.replace(old, new))
     assert joint_of(change(f'r::{name}')) == joint
+
+
+ARM = model_file("""
+    <link name="base"/>
+    <link name="tool"><pose>1 0 0 0 0 0</pose><sensor name="eye" type="camera"/></link>
+    <joint name="turn" type="revolute"><pose relative_to="base"/>
+      <parent>base</parent>
+      <child>tool</child>
+      <axis><xyz>0 0 1</xyz></axis>
+    </joint>
+    <frame name="mark"><pose>2 0 0 0 0 0</pose></frame>
+    <frame name="on_mark"><pose relative_to="mark">0 0 1 0 0 0</pose></frame>""")
+
+
+@pytest.fixture(name='write_change')
+def make_written_change(tmp_path):
+    """Changes a pose of the arm; returns the frames that moved, and the text of the file then."""
+    path = tmp_path / 'arm.sdf'
+    path.write_text(ARM, encoding='utf-8')
+    request = LoadRequest(
+        str(path), '', tf_options=TfOptions(use_joint_states=True, frame_prefix='r/'))
+    loaded = loaded_scene_from_request(request)
+    fingerprint = fingerprint_of_scene(loaded.scene)
+
+    def write_change(
+            frame, pose, reference='', position=0.0, published=fingerprint, *, dry_run=False):
+        positions = loaded.joint_positions
+        positions.update(positions.selection(['turn']), np.array([position]))
+        found = write_frame_change(
+            request, published, frame, pose, reference, positions, dry_run=dry_run)
+        return found.moved_frames, path.read_text(encoding='utf-8')
+
+    return write_change
+
+
+def test_a_pose_is_taken_where_its_reference_has_moved_to(write_change):
+    arguments = 'r/mark', Pose(0.5), 'r/tool', np.pi / 2
+    assert write_change(*arguments, dry_run=True) == (['r/on_mark'], ARM)
+    moved, text = write_change(*arguments)
+    assert moved == ['r/on_mark']
+    assert_close(load_text(text).pose('m::mark')[:3], (0.0, 1.5, 0.0))
+
+
+def test_the_camera_of_an_optical_frame_is_moved(write_change):
+    moved, text = write_change('r/tool/eye_optical', Pose(0.5))
+    assert moved == []
+    assert_close(load_text(text).pose('m::tool::eye')[:3], (0.5, 0.0, 0.0))
+
+
+def test_a_frame_does_not_move_in_one_that_moves_with_it(write_change):
+    with pytest.raises(SdfError, match='m::tool'):
+        write_change('tool', Pose(0.5), 'r/tool/eye_optical')
+
+
+def test_a_file_that_is_not_what_is_published(write_change):
+    with pytest.raises(SdfError, match='the file has changed since it was read'):
+        write_change('mark', Pose(), published=b'other')
+
+
+TURNING_ROBOT = urdf_texts.robot(
+    ''.join(map(urdf_texts.link, ('base', 'arm', 'tool')))
+    + urdf_texts.joint('turn', 'base', 'arm', 'continuous', '<axis xyz="0 0 1"/>')
+    + urdf_texts.joint('mount', 'arm', 'tool', 'fixed', urdf_texts.origin('1 0 0')))
+
+
+@pytest.mark.parametrize(('frame', 'asked', 'origin', 'moved'), [
+    ('tool', Pose(0.0, 2.0, 0.0, 0.0, 0.0, 0.5 ** 0.5, 0.5 ** 0.5), '2 0 0', []),
+    # The joint itself has turned.
+    ('arm', Pose(0.5, 0.0, 0.0, 0.0, 0.0, 0.5 ** 0.5, 0.5 ** 0.5), '0.5 0 0', ['tool'])])
+def test_the_origin_of_a_urdf_whose_joint_has_turned(tmp_path, frame, asked, origin, moved):
+    path = tmp_path / 'robot.urdf'
+    path.write_text(TURNING_ROBOT)
+    request = LoadRequest(str(path), '', tf_options=TfOptions(use_joint_states=True, kinds=None))
+    loaded = loaded_scene_from_request(request)
+    positions = loaded.joint_positions
+    positions.update(positions.selection(['turn']), np.array([np.pi / 2]))
+    found = write_frame_change(
+        request, fingerprint_of_scene(loaded.scene), frame, asked, 'base', positions,
+        dry_run=False)
+    assert found.moved_frames == moved
+    written = f'<origin xyz="{origin}" rpy="0 0 0"/>'
+    assert path.read_text() == (
+        TURNING_ROBOT.replace('<origin xyz="1 0 0" rpy="0 0 0"/>', written) if frame == 'tool' else
+        TURNING_ROBOT.replace('"continuous">', f'"continuous">{written}'))

@@ -15,7 +15,7 @@ from sdf_pose_bridge.errors import (
     SdfError,
     TemporaryReadError,
 )
-from sdf_pose_bridge.export.frame_change import write_frame_change
+from sdf_pose_bridge.export.pose_setting import write_frame_change
 from sdf_pose_bridge.export.published_scene import fingerprint_of_scene, is_temporary, LoadRequest
 from sdf_pose_bridge.export.visual_markers import markers_from_text
 from sdf_pose_bridge.geometry.poses import Pose

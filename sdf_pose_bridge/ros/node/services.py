@@ -40,7 +40,7 @@ from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge_interfaces.srv import ConvertPoses, ConvertRotation, LookupPose, SetPose
 
 if TYPE_CHECKING:
-    from sdf_pose_bridge.export.frame_change import FrameChange
+    from sdf_pose_bridge.export.pose_setting import FrameChange
 
 Answer: TypeAlias = Callable[[Any, Any], None]
 """Fills the response to a request."""
@@ -165,7 +165,7 @@ def set_pose(
         msg = 'the pose is in the parameter robot_description, not in a file'
         raise PoseNotSetError(msg, Place(str(loaded.path)))
     # Imported here because it takes 7 ms, and few nodes write files.
-    from sdf_pose_bridge.export.frame_change import write_frame_change
+    from sdf_pose_bridge.export.pose_setting import write_frame_change
     change = call(
         loaded.request, write_frame_change, loaded.request, fingerprint_of_scene(loaded.scene),
         request.frame, _pose_from_request(request, loaded), request.pose.header.frame_id,
