@@ -264,9 +264,7 @@ def _stamp_ns(sec: int, nanosec: int) -> int:
     return sec * NANOSECONDS + nanosec
 
 
-def _string_from_bytes(
-    data: bytes, place: int, length_format: struct.Struct,
-) -> tuple[str, int]:
+def _string_from_bytes(data: bytes, place: int, length_format: struct.Struct) -> tuple[str, int]:
     """Return a string, and the place of its end."""
     place += -place % 4
     length, = length_format.unpack_from(data, place)

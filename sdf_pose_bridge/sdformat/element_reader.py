@@ -38,21 +38,13 @@ from sdf_pose_bridge.sdformat.grammar import Definition, definition_of, Item, Ki
 from sdf_pose_bridge.sdformat.inertials import inertial_from_element
 from sdf_pose_bridge.sdformat.joints import check_children_of_joint, joint_details_from_element
 from sdf_pose_bridge.sdformat.plugins import plugins_of, sensor_details_from_element
-from sdf_pose_bridge.sdformat.poses import (
-    EULER_RPY,
-    pose_format_of,
-    pose_numbers_from_text,
-)
+from sdf_pose_bridge.sdformat.poses import EULER_RPY, pose_format_of, pose_numbers_from_text
 from sdf_pose_bridge.sdformat.shapes import check_material, check_submesh, shape_of
 from sdf_pose_bridge.sdformat.sibling_names import check_scoped_names, SiblingNames
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import URDF_TAGS
 from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
-from sdf_pose_bridge.sdformat.values import (
-    choice_fault,
-    frame_of_attribute,
-    judged_value,
-)
+from sdf_pose_bridge.sdformat.values import choice_fault, frame_of_attribute, judged_value
 from sdf_pose_bridge.sdformat.xml_tree import (
     attribute_of,
     described,
@@ -105,9 +97,7 @@ class _Scope(NamedTuple):
 class ElementReader:
     """Reads elements by their definitions; errors and warnings are added to the sources."""
 
-    def __init__(
-        self, sources: Sources, *, shapes: bool = False, plugins: bool = False,
-    ) -> None:
+    def __init__(self, sources: Sources, *, shapes: bool = False, plugins: bool = False) -> None:
         self._sources = sources
         self._reads_plugins = plugins
         self._table = ElementsBuilder(sources.paths, has_shapes=shapes)

@@ -344,9 +344,7 @@ class JointStates:
 
     # Publication
 
-    def _publish(
-        self, rows: Rows, awaited: Sequence[StateSource] = (),
-    ) -> None:
+    def _publish(self, rows: Rows, awaited: Sequence[StateSource] = ()) -> None:
         """
         Publish moving transforms, if any; with a highest rate, a period begins if there is none.
 

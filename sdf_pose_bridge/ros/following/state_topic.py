@@ -13,12 +13,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSPolicyKind, QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
-from sdf_pose_bridge.ros.cdr import (
-    joint_state_from_bytes,
-    POSE_TYPES,
-    poses_from_bytes,
-    PoseType,
-)
+from sdf_pose_bridge.ros.cdr import joint_state_from_bytes, POSE_TYPES, poses_from_bytes, PoseType
 from sdf_pose_bridge.ros.following.model_poses import messages_from_poses
 from sdf_pose_bridge.ros.following.state_messages import KnownStreams, Message, StateSource
 from sdf_pose_bridge.ros.following.wait_set import NoExecutor, take_message

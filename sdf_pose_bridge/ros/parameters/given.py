@@ -360,9 +360,7 @@ def parameter_with_type(given: Parameter, wanted: Parameter.Type) -> Parameter:
     return given
 
 
-def _parameters_from_messages(
-    node: Node, messages: Sequence[ParameterMessage],
-) -> list[Parameter]:
+def _parameters_from_messages(node: Node, messages: Sequence[ParameterMessage]) -> list[Parameter]:
     """
     Return the parameters of a call; of several values of one, the last.
 

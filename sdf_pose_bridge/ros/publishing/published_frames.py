@@ -180,9 +180,7 @@ class MovingTopics:
         is_changed[dofs] = True
         return np.flatnonzero(self.frames.depends_on(is_changed) & self.has_transform)
 
-    def stamp(
-        self, rows: Rows, stamp_ns: int, *, ignore_stamps: bool = False,
-    ) -> Rows:
+    def stamp(self, rows: Rows, stamp_ns: int, *, ignore_stamps: bool = False) -> Rows:
         """
         Give moving transforms a stamp, before they are published or wait for it.
 
