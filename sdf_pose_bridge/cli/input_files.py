@@ -8,6 +8,7 @@ import argparse
 from functools import partial
 import sys
 import threading
+from typing import Any
 
 from sdf_pose_bridge.cli.printing import print_problems
 from sdf_pose_bridge.errors import SdfError, SdfWarning
@@ -24,14 +25,13 @@ STANDARD_INPUT = '-'
 """The argument for the standard input."""
 
 
-def scene_from_file(
-    path: str, options: argparse.Namespace, *, shapes: bool = False, plugins: bool = False,
-) -> Scene:
+def scene_from_file(path: str, options: argparse.Namespace, **parts: bool) -> Scene:
     """
     Load a file, or a pipe such as the shell's ``<(command)``.
 
     :param path: path of the file; ``-`` for the standard input, beside which includes are searched
         in the working directory.
+    :param parts: ``shapes`` and ``plugins`` as for :func:`~sdf_pose_bridge.load`.
     :raises SdfError: if the file is not valid.
     """
     is_input = path == STANDARD_INPUT
@@ -43,33 +43,31 @@ def scene_from_file(
     try:
         text = bytes_from_file('/dev/stdin' if is_input else path, Usage(), allows_pipe=True)
         path = '<stdin>' if is_input else path
-        return loader(path, options)(shapes=shapes, plugins=plugins, texts={path: text})
+        return loader(path, options, **parts)(texts={path: text})
     finally:
         timer.cancel()
 
 
-def loader(path: str, options: argparse.Namespace) -> partial[Scene]:
+def loader(path: str, options: argparse.Namespace, **parts: Any) -> partial[Scene]:
     """Return a function that loads a file as :func:`scene_from_file`."""
     return partial(load, path, resource_paths=options.resource_paths,
-                   on_missing_include='skip' if options.skip_missing else 'error')
+                   on_missing_include='skip' if options.skip_missing else 'error', **parts)
 
 
 def load_file(
-    path: str, options: argparse.Namespace, *, shapes: bool = False,
+    path: str, options: argparse.Namespace, **parts: bool,
 ) -> tuple[Scene | None, tuple[SdfError, ...], tuple[SdfWarning, ...]]:
     """Load a file as :func:`scene_from_file`; return the scene or None, errors and warnings."""
     try:
-        scene = scene_from_file(path, options, shapes=shapes)
+        scene = scene_from_file(path, options, **parts)
     except SdfError as error:
         return None, error.errors, error.warnings
     return scene, (), scene.warnings
 
 
-def scene_of(
-    path: str, options: argparse.Namespace, *, shapes: bool = False, plugins: bool = False,
-) -> Scene:
+def scene_of(path: str, options: argparse.Namespace, **parts: bool) -> Scene:
     """Load a file as :func:`scene_from_file`, and print its warnings to standard error."""
-    scene = scene_from_file(path, options, shapes=shapes, plugins=plugins)
+    scene = scene_from_file(path, options, **parts)
     print_problems((), scene.warnings, sys.stderr)
     return scene
 

@@ -115,8 +115,8 @@ def run(options: argparse.Namespace) -> int:
             pages = viewer.Pages(
                 scene, tf_options_from_arguments(options), 0 if options.output else options.port,
                 Units(options.length_unit, options.angle_unit), meshes,
-                partial(call, partial(pose_change, load=partial(
-                    loader(path, options), shapes=True))) if options.edit else None)
+                partial(call, partial(pose_change, load=loader(path, options, shapes=True)))
+                if options.edit else None)
         except UntestedViserError as error:
             raise CommandError(str(error)) from error
         with contextlib.closing(pages):

@@ -11,7 +11,7 @@ a caller gives are in this room or below it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 import contextlib
 from functools import partial
 from typing import NamedTuple, TypeAlias
@@ -128,15 +128,11 @@ def write_frame_change(
         msg = 'the file has changed since it was read'
         raise PoseNotSetError(msg, Place(str(loaded.path)))
 
-    def scene_with(*, texts: Mapping[str, bytes]) -> Scene:
-        return loaded_scene_from_request(request, texts).scene
-
-    def lookup(scene: Scene) -> PoseLookup:
-        return PoseLookup(scene, tf_tree_from_scene(scene, request.tf_options), positions)
-
     element, in_element = loaded.lookup.element(frame)
-    asked = pose_product(asked, pose_inverse(in_element))
-    change = pose_change(scene, element, asked, lookup, scene_with, relative_to=reference)
+    change = pose_change(
+        scene, element, pose_product(asked, pose_inverse(in_element)),
+        lambda scene: PoseLookup(scene, tf_tree_from_scene(scene, request.tf_options), positions),
+        lambda texts: loaded_scene_from_request(request, texts).scene, relative_to=reference)
     moved = set(names_of_moved(scene, change.scene))
     elements = loaded.tree.elements.tolist()
     if not dry_run:
