@@ -47,7 +47,7 @@ from sdf_pose_bridge.sdformat.include.uris import resource_finder
 
 _FORMATS = ('.html', '.png')
 _PORT = 8080
-_PERIOD_S, _SETTLING_S = 0.05, 0.03
+_PERIOD_S, _SETTLING_S, _TABS_S = 0.05, 0.03, 1.0
 _EMPTY = b'<sdf version="1.11"><world name="empty"/></sdf>'
 
 BROWSERS = ('chromium', 'chromium-browser', 'google-chrome', 'chrome')
@@ -127,7 +127,7 @@ def run(options: argparse.Namespace) -> int:
                 return 0
             if errors:
                 pages.show_errors(_lines(errors))
-            _open(pages.address, options.port)
+            _open(pages, options.port)
             watcher = FileWatcher()
             # The standard input cannot be read again.
             watcher.watch(
@@ -172,13 +172,15 @@ def _how_to_install() -> str:
         'no viser, and pip installs nothing beside the packages of apt)')
 
 
-def _open(address: str, port: int) -> None:
+def _open(pages: Any, port: int) -> None:
     # Imported here because other commands do not need it.
     import webbrowser
-    if port and f':{port}/' not in address:
+    if port and f':{port}/' not in pages.address:
         print(f'sdf_pose view: port {port} is in use', file=sys.stderr)
-    print(f'open {address} in a browser; Ctrl-C ends this program', flush=True)
-    webbrowser.open(address)
+    print(f'open {pages.address} in a browser; Ctrl-C ends this program', flush=True)
+    # A tab of the last start that is in view asks for the page by itself.
+    if not pages.was_asked.wait(_TABS_S):
+        webbrowser.open(pages.address)
 
 
 def _follow(pages: Any, watcher: FileWatcher, load: Callable[[], Scene]) -> None:

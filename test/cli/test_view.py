@@ -7,6 +7,8 @@ import os
 import re
 import socket
 import sys
+from threading import Event
+from types import SimpleNamespace
 from urllib.parse import urlsplit
 import webbrowser
 
@@ -140,6 +142,17 @@ def test_page_opens_in_the_browser(run_main, monkeypatch):
         done = run_main('view', 'good.sdf', '--port', str(port))
     assert done.stderr == f'sdf_pose view: port {port} is in use\n'
     assert urlsplit(opened[1]).port != port
+
+
+@pytest.mark.parametrize('was_asked', [False, True])
+def test_no_browser_is_opened_where_a_tab_asks_for_the_page(monkeypatch, was_asked):
+    from sdf_pose_bridge.cli import view
+    opened, asked = [], Event()
+    if was_asked:
+        asked.set()
+    monkeypatch.setattr(webbrowser, 'open', opened.append)
+    view._open(SimpleNamespace(address='http://127.0.0.1:1/a/', was_asked=asked), 1)
+    assert bool(opened) is not was_asked
 
 
 @pytest.mark.parametrize('port', ['80000', '-1', 'http'])

@@ -177,6 +177,17 @@
       });
     }
   };
+  // The page of the same file may be served again, at an address that its key and a salt give.
+  const follow = async () => {
+    const salt = (await fetch('/')).headers.get('Salt');
+    if (!salt) return;
+    const text = new TextEncoder().encode(given('key') + salt + location.host);
+    const bytes = new Uint8Array(await crypto.subtle.digest('SHA-256', text));
+    const digits = [...bytes].map(byte => byte.toString(16).padStart(2, '0')).join('');
+    const address = `/${digits.slice(0, 32)}/`;
+    if ((await fetch(address)).ok && hasEnded) location.replace(address);
+  };
+  setInterval(() => { if (hasEnded && !document.hidden) follow().catch(() => {}); }, 500);
   const strip = document.createElement('div');
   strip.className = 'strip';
   let shownInStrip = '', selected;
@@ -235,7 +246,7 @@
     }
     selected = row?.dataset.ask;
     const text = hasEnded
-      ? '<b>sdf_pose view has ended; start it again and open the page that it names</b>'
+      ? '<b>sdf_pose view has ended; start it again, or open the page that it names</b>'
       : given('errors', '') + given('strip', '');
     if (text !== shownInStrip) {
       shownInStrip = strip.innerHTML = text;

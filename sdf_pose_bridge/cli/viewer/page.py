@@ -320,8 +320,10 @@ class Pages:
         # Many files of models have the name model.sdf.
         self._title = printable(options.model or (
             path.name if scene.world_names else [*scene.names[1:2], path.name][0]))
+        self.was_asked = threading.Event()
+        """Set when a browser asks for a page."""
         self._server, self.address = server_for_its_owner(
-            port, self._title, html_of_data('path', str(path.resolve())))
+            port, self._title, scene.path, self.was_asked)
         self._errors = ''
         self._server.initial_camera.fov = FIELD_OF_VIEW_RAD
         self._place_camera(visible)

@@ -9,9 +9,12 @@ Private names of viser are used only here.
 from __future__ import annotations
 
 from collections.abc import Callable
+import contextlib
+import hashlib
 import html
 from http import HTTPStatus
 import logging
+import os
 from pathlib import Path
 from queue import SimpleQueue
 import re
@@ -28,6 +31,7 @@ from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
 from sdf_pose_bridge.cli.viewer import LIBRARIES, UntestedViserError
+from sdf_pose_bridge.cli.viewer.frame_texts import html_of_data
 
 _ADDRESS = '127.0.0.1'
 _HOSTS = r'(127\.0\.0\.1|localhost)(:[0-9]+)?'
@@ -75,14 +79,38 @@ def page_with_script(page: str, title: str, data: str = '') -> str:
         f'<script>{script}</script>', 1)
 
 
+def key_of_file(path: str) -> str:
+    """
+    Return a key by which the tabs of a file find its page when it is served again.
+
+    :return: the same one whenever this user serves this file; another one each time if nothing can
+        be kept in the folder of the user's state.
+    """
+    key, state = secrets.token_bytes(32), os.environ.get('XDG_STATE_HOME') or '~/.local/state'
+    with contextlib.suppress(OSError, RuntimeError):
+        kept = Path(state, 'sdf_pose_bridge/key_of_pages').expanduser()
+        status = kept.stat() if kept.exists() else None
+        # Nobody else could read or write it, and it was written to its end.
+        if status and (status.st_uid, status.st_mode & 0o77, status.st_size) == (
+                os.getuid(), 0, len(key)):
+            key = kept.read_bytes()
+        else:
+            kept.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+            kept.unlink(missing_ok=True)
+            kept.touch(0o600, exist_ok=False)
+            kept.write_bytes(key)
+    return hashlib.sha256(key + os.fsencode(os.path.realpath(path))).hexdigest()
+
+
 def server_for_its_owner(
-    port: int, title: str, data: str = '',
+    port: int, title: str, path: str, was_asked: threading.Event,
 ) -> tuple[viser.ViserServer, str]:
     """
     Start a server for this user only, not for other machines, users or pages of other servers.
 
     :param port: its port, or the next one that is free; 0 for any.
-    :param data: elements of its page with data for the script.
+    :param path: the file that its page shows.
+    :param was_asked: set when a browser asks for the page.
     :return: the server, and the address of its page: with a secret in its path, without which
         requests are rejected.
     :raises UntestedViserError: if this cannot be done with the installed viser.
@@ -92,14 +120,19 @@ def server_for_its_owner(
     logging.getLogger('websockets').setLevel(logging.CRITICAL)
     # A tab may be closed while its page is drawn.
     warnings.filterwarnings('ignore', '.* on a closed connection', UserWarning)
-    secret = secrets.token_urlsafe(16)
-    page = page_with_script(_PAGE_OF_VISER.read_text(encoding='utf-8'), title, data).encode()
+    salt, key = secrets.token_urlsafe(16), key_of_file(path) if port else secrets.token_hex(32)
+    page = page_with_script(
+        _PAGE_OF_VISER.read_text(encoding='utf-8'), title,
+        html_of_data('path', str(Path(path).resolve())) + html_of_data('key', key)).encode()
     serve, guarded = websockets_server.serve, []
 
     def answer(connection: ServerConnection, request: Request) -> Response | None:
-        reason = reason_to_refuse(request, secret)
+        reason = reason_to_refuse(request, secret_of_page(key, salt, connection.local_address[1]))
         if reason:
-            return connection.respond(HTTPStatus.FORBIDDEN, f'{reason}\n')
+            refusal = connection.respond(HTTPStatus.FORBIDDEN, f'{reason}\n')
+            refusal.headers['Salt'] = salt
+            return refusal
+        was_asked.set()
         if request.headers.get('Upgrade') == 'websocket':
             return None
         return Response(HTTPStatus.OK, 'OK', Headers({
@@ -126,7 +159,18 @@ def server_for_its_owner(
     # The environment map of viser makes every color pale.
     server.scene.configure_environment_map(None)
     server.scene.configure_default_lights(enabled=False)
-    return server, f'http://{_ADDRESS}:{server.get_port()}/{secret}/'
+    port = server.get_port()
+    return server, f'http://{_ADDRESS}:{port}/{secret_of_page(key, salt, port)}/'
+
+
+def secret_of_page(key: str, salt: str, port: int) -> str:
+    """
+    Return the secret in the address of a page, which tabs with the key of its file find too.
+
+    The salt, which anybody may know, is another one for each start. A program of another user that
+    listens where a page was served before learns no secret of the page, as that has another port.
+    """
+    return hashlib.sha256(f'{key}{salt}{_ADDRESS}:{port}'.encode()).hexdigest()[:32]
 
 
 def reason_to_refuse(request: Request, secret: str) -> str:

@@ -3,8 +3,11 @@
 """Which requests the server of the page answers; page/ asks it."""
 
 import html
+from http import HTTPStatus
 import re
 from socket import create_connection
+from threading import Event
+from urllib.request import urlopen
 
 from deadline import DEADLINE_S
 import pytest
@@ -17,8 +20,10 @@ from websockets.http11 import Request
 from sdf_pose_bridge.cli.viewer import server as server_module
 from sdf_pose_bridge.cli.viewer.frame_texts import html_of_data
 from sdf_pose_bridge.cli.viewer.server import (
+    key_of_file,
     page_with_script,
     reason_to_refuse,
+    secret_of_page,
     server_for_its_owner,
 )
 
@@ -68,20 +73,57 @@ def request(path, origin, host):
     return Request(path, headers)
 
 
-def test_each_server_has_its_own_secret():
-    serve = websockets_server.serve
-    servers = [server_for_its_owner(0, 'a.sdf') for _ in range(2)]
+def test_each_start_has_its_own_secret():
+    serve, was_asked = websockets_server.serve, [Event(), Event()]
+    servers = [server_for_its_owner(0, 'a', 'a.sdf', each) for each in was_asked]
     assert websockets_server.serve is serve
     secrets = {address.split('/')[3] for _, address in servers}
+    with urlopen(servers[0][1], timeout=DEADLINE_S) as page:
+        assert page.status == HTTPStatus.OK
     for server, _ in servers:
         server.stop()
+    assert [each.is_set() for each in was_asked] == [True, False]
     assert len(secrets) == 2
     assert all(len(secret) > 20 for secret in secrets)
 
 
 def test_connection_that_is_opened_in_advance_does_not_keep_it_from_ending(monkeypatch):
     monkeypatch.setattr(server_module, '_LONGEST_HANDSHAKE_S', 0.1)
-    server, _ = server_for_its_owner(0, 'a.sdf')
+    server, _ = server_for_its_owner(0, 'a', 'a.sdf', Event())
     with create_connection(('127.0.0.1', server.get_port()), timeout=DEADLINE_S) as connection:
         assert connection.recv(1) == b''
     server.stop()
+
+
+def test_secret_depends_on_the_port_where_another_program_may_listen_later():
+    secrets = {secret_of_page('key', 'salt', port) for port in (8080, 8081)}
+    assert len(secrets | {secret_of_page('other', 'salt', 8080)}) == 3
+
+
+@pytest.fixture
+def kept(tmp_path, monkeypatch):
+    """The file of the key, which is not there yet."""
+    monkeypatch.setenv('XDG_STATE_HOME', str(tmp_path / 'state'))
+    return tmp_path / 'state/sdf_pose_bridge/key_of_pages'
+
+
+def test_file_has_one_key_that_its_user_alone_can_read(kept, tmp_path):
+    (tmp_path / 'link.sdf').symlink_to('a.sdf')
+    keys = [key_of_file(str(tmp_path / name)) for name in ('a.sdf', 'link.sdf', 'b.sdf')]
+    assert keys[0] == keys[1] != keys[2]
+    assert [path.stat().st_mode & 0o777 for path in (kept.parent, kept)] == [0o700, 0o600]
+
+
+@pytest.mark.parametrize('damage', [
+    lambda kept: kept.chmod(0o640), lambda kept: kept.write_bytes(b'')])
+def test_key_that_others_could_know_is_replaced(kept, damage):
+    before = key_of_file('a.sdf')
+    damage(kept)
+    after = key_of_file('a.sdf')
+    assert before != after == key_of_file('a.sdf')
+    assert (kept.stat().st_mode & 0o777, kept.stat().st_size) == (0o600, 32)
+
+
+def test_key_is_another_one_each_time_where_none_can_be_kept(kept, tmp_path):
+    (tmp_path / 'state').touch()
+    assert key_of_file('a.sdf') != key_of_file('a.sdf')

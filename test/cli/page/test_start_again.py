@@ -1,0 +1,108 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The page in a real browser where the program has ended and is started again."""
+
+import contextlib
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+import socket
+from threading import Thread
+
+import pytest
+from shown_page import (
+    control,
+    HOSTILE,
+    press,
+    ROWS,
+    select,
+    strip_button,
+    TEXT,
+    type_over,
+    view_of,
+)
+
+from sdf_pose_bridge import load
+
+FRAME = '<frame name="one more"><pose>0 0 0 0 0 0</pose></frame></world>'
+
+
+@pytest.fixture
+def port():
+    with socket.create_server(('127.0.0.1', 0)) as server:
+        return str(server.getsockname()[1])
+
+
+def test_tab_shows_the_file_that_is_served_again(tab, tmp_path, port):
+    file = tmp_path / 'cell.sdf'
+    file.write_text(TEXT)
+    with view_of(tmp_path, '--edit', '--port', port) as address:
+        tab.open(address)
+        for number in ('0.5', '0.7'):
+            select(tab, HOSTILE)
+            type_over(tab, control('x [m]'), number)
+            tab.wait_for(strip_button('write to file'))
+            if number == '0.5':
+                press(tab, 'write to file')
+                tab.wait_for(strip_button('undo the last write'))
+    tab.wait_for("document.querySelector('.strip').innerText.includes('view has ended')")
+    file.write_text(TEXT.replace('</world>', FRAME))
+    with view_of(tmp_path, '--edit', '--port', port) as again:
+        assert again != address
+        tab.wait_for(f"location.href.startsWith('{again}') && {ROWS}.length === 6")
+        # Nothing of what was typed, written or selected before is left.
+        assert tab.run("document.querySelector('.rows .selected')") is None
+        assert tab.run("document.querySelectorAll('.strip button').length") == 0
+        select(tab, 'one more')
+        type_over(tab, control('y [m]'), '2')
+        tab.wait_for(strip_button('write to file'))
+        press(tab, 'write to file')
+        tab.wait_for(strip_button('undo the last write'))
+        scene = load(file)
+        assert (scene.pose('one more').y, scene.pose(HOSTILE).x) == (2.0, 1.0)
+
+
+@contextlib.contextmanager
+def other_program(port):
+    """Answer any request at a port, as servers of many web applications do."""
+    class Handler(BaseHTTPRequestHandler):
+        def do_GET(self):
+            self.send_response(HTTPStatus.OK)
+            self.end_headers()
+
+        def log_message(self, *_):
+            pass
+
+    with ThreadingHTTPServer(('127.0.0.1', int(port)), Handler) as server:
+        thread = Thread(target=server.serve_forever)
+        thread.start()
+        try:
+            yield
+        finally:
+            server.shutdown()
+            thread.join()
+
+
+def view_of_other_file(port, tmp_path):
+    (tmp_path / 'other').mkdir()
+    (tmp_path / 'other/cell.sdf').write_text(TEXT)
+    return view_of(tmp_path / 'other', '--port', port)
+
+
+@pytest.mark.parametrize(('other', 'answers'), [
+    (view_of_other_file, ['403', '403']), (lambda port, _: other_program(port), ['200', '200'])])
+def test_tab_stays_where_something_else_is_served(tab, tmp_path, port, other, answers):
+    (tmp_path / 'cell.sdf').write_text(TEXT)
+    with view_of(tmp_path, '--port', port) as address:
+        tab.open(address)
+        tab.wait_for(f'{ROWS}.length === 5')
+    tab.run("""{ const fetched = window.fetch; window.answers = [];
+      window.fetch = async (...given) => {
+        const answer = await fetched(...given);
+        answers.push(String(answer.status));
+        return answer;
+      }; }""")
+    with other(port, tmp_path):
+        tab.wait_for('window.answers?.length >= 2')
+        assert tab.run('answers.slice(0, 2)') == answers
+        assert tab.run('location.href').startswith(address)
+        assert 'has ended' in tab.run("document.querySelector('.strip').innerText")
