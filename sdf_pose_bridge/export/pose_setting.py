@@ -35,6 +35,7 @@ from sdf_pose_bridge.printed_text import quoted_names
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.pose_writing import pose_text_from_file, PoseText
+from sdf_pose_bridge.sdformat.source_formats import SourceFormat
 from sdf_pose_bridge.tf.comparison import names_of_moved
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.lookup import PoseLookup
@@ -156,16 +157,19 @@ def _change_of_own_pose(
     target = text.element_at_line(line)
     at = Place(path, text.line(target))
     if not all_instances:
-        _check_instances(marked, element, place, at, is_urdf=text.is_urdf)
+        _check_instances(
+            marked, element, place, at, is_urdf=text.source_format is SourceFormat.URDF)
     make = partial(_change_of_text, scene, element, asked, measure, load, path)
-    if text.is_urdf:
-        return _change_of_origin(scene, element, text, make)
-    reference = int(scene.references[element])
-    in_reference = relative_pose(*measure(scene, reference, element))
-    _check_joints(scene, element, in_reference, at)
-    if is_written:
-        return make(reference, text.pose(target), partial(text.with_pose, target), at.line)
-    return make(reference, in_reference, partial(text.with_new_pose, target), at.line)
+    match text.source_format:
+        case SourceFormat.URDF:
+            return _change_of_origin(scene, element, text, make)
+        case SourceFormat.SDFORMAT:
+            reference = int(scene.references[element])
+            in_reference = relative_pose(*measure(scene, reference, element))
+            _check_joints(scene, element, in_reference, at)
+            if is_written:
+                return make(reference, text.pose(target), partial(text.with_pose, target), at.line)
+            return make(reference, in_reference, partial(text.with_new_pose, target), at.line)
 
 
 def _change_of_text(
@@ -259,7 +263,8 @@ def _change_of_origin(
     """Find the change of the ``<origin>`` of a joint of URDF that moves an element to a pose."""
     name = scene.own_name(element)
     scope = scene.names[element].removesuffix(name)
-    for number, joint in text.joints_to_move(name, is_included=scene.urdf_root is None):
+    is_included = scene.source_format is not SourceFormat.URDF
+    for number, joint in text.joints_to_move(name, is_included=is_included):
         # The link "world" is the frame of the model.
         parent = scene.index(scope + joint.parent, world=scene.world_of(element)) if (
             scene.has(scope + joint.parent)) else int(scene.parents[element])

@@ -20,6 +20,7 @@ from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.include.manifests import model_file_from_directory, ModelFile
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.limits import Usage
+from sdf_pose_bridge.sdformat.source_formats import SourceFormat
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file, xml_from_bytes
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.lookup import PoseLookup
@@ -40,10 +41,10 @@ def loaded_scene_from_request(
     begin = time.perf_counter()
     path, manifest, warnings = _file_from_request(request)
     text = bytes_from_file(path, Usage()) if request.sdf_file else request.robot_description
-    is_made_urdf = request.description_format is DescriptionFormat.URDF
+    makes_urdf = request.description_format is DescriptionFormat.URDF
     scene = load_text(
         text, path, resource_paths=request.resource_paths,
-        on_missing_include=request.on_missing_include, shapes=is_made_urdf,
+        on_missing_include=request.on_missing_include, shapes=makes_urdf,
         plugins=request.tf_options.follows_models, texts=texts)
     if request.model_name and scene.world_names:
         msg = 'model_name has no effect, because this is a world and not a file of one model'
@@ -54,8 +55,8 @@ def loaded_scene_from_request(
     joint_positions = None if tree.moving is None else JointPositions(
         scene, tree.moving.motion, options.model, request.unreported_joints,
         is_spawned=bool(request.model_name))
-    description = '' if tree.world else unicode_text(text)
-    if is_made_urdf and scene.urdf_root is None:
+    description = '' if tree.world else _description_from(scene.source_format, text)
+    if makes_urdf and scene.source_format is not SourceFormat.URDF:
         description, warnings_of_urdf = _urdf(scene, request)
         warnings += warnings_of_urdf
     # The tree and the URDF may have the same warnings.
@@ -75,6 +76,13 @@ def loaded_scene_from_request(
         read_since_ns=read_since_ns,
         seconds=time.perf_counter() - begin,
     )
+
+
+def _description_from(source_format: SourceFormat, text: str | bytes) -> str:
+    """Return the given text, for the readers of ``robot_description``."""
+    match source_format:
+        case SourceFormat.SDFORMAT | SourceFormat.URDF:
+            return unicode_text(text)
 
 
 def _urdf(scene: Scene, request: LoadRequest) -> tuple[str, tuple[SdfWarning, ...]]:

@@ -146,8 +146,7 @@ def _scene(
         characters = sum(map(len, graph.names)) - 64 * len(graph.names)
         sources.usage.check('characters', characters, longest)
     sources.problems.raise_errors()
-    return scene_from_graph(
-        document.path, elements, graph, sources.problems, document.urdf_root)
+    return scene_from_graph(document, elements, graph, sources.problems)
 
 
 def _model_by_itself(root: XmlElement, sources: Sources) -> ModelByItself | None:

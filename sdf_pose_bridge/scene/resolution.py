@@ -28,6 +28,7 @@ from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.frame_graph import FrameGraph
 from sdf_pose_bridge.scene.joints import JointEnds
 from sdf_pose_bridge.scene.scene import Joint, Scene
+from sdf_pose_bridge.sdformat.documents import Document
 from sdf_pose_bridge.sdformat.elements import Elements, NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.inertials import Inertial, moments_from_matrix, moved_moments
@@ -40,8 +41,7 @@ _LARGEST_M = 1e300
 
 
 def scene_from_graph(
-    path: str, elements: Elements, graph: FrameGraph, problems: Problems,
-    urdf_root: str | None = None,
+    document: Document, elements: Elements, graph: FrameGraph, problems: Problems,
 ) -> Scene:
     """
     Resolve all poses, and leave out unresolved elements.
@@ -72,7 +72,8 @@ def scene_from_graph(
         return {new_index_of[index]: each for index, each in details.items() if is_kept[index]}
 
     return Scene(
-        path=path,
+        path=document.path,
+        source_format=document.source_format,
         files=tuple(elements.paths),
         names=tuple(compress(graph.names, is_kept.tolist())),
         kinds=elements.kinds[is_kept],
@@ -110,7 +111,7 @@ def scene_from_graph(
             index: elements.names[index]
             for index in np.flatnonzero(elements.kinds == Kind.WORLD).tolist()}),
         warnings=problems.warnings,
-        urdf_root=urdf_root,
+        urdf_root=document.urdf_root,
     )
 
 

@@ -25,6 +25,7 @@ from sdf_pose_bridge.sdformat.inertials import Inertial
 from sdf_pose_bridge.sdformat.joints import JointAxis
 from sdf_pose_bridge.sdformat.plugins import Plugin, SensorDetails
 from sdf_pose_bridge.sdformat.shapes import Shape
+from sdf_pose_bridge.sdformat.source_formats import SourceFormat
 
 
 class Joint(NamedTuple):
@@ -130,9 +131,11 @@ class Scene(ReadOnly):
     """The name of each world, by its index."""
     warnings: tuple[SdfWarning, ...]
     """The warnings, in file order."""
-    urdf_root: str | None
-    """The root link of a URDF that is the file or the text itself; None for SDFormat. If it is
-    called ``world``, it is the implicit root."""
+    source_format: SourceFormat
+    """The format of the file or the text itself."""
+    urdf_root: str
+    """The root link of a URDF that is the file or the text itself; else empty. If it is called
+    ``world``, it is the implicit root."""
 
     def __repr__(self) -> str:
         return f'<Scene of {self.path}: {len(self.names)} elements>'

@@ -8,25 +8,27 @@ from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from sdf_pose_bridge.errors import AttributeInvalidError, FileReadError, ParsingError, Place
+from sdf_pose_bridge.errors import AttributeInvalidError, FileReadError, Place
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.sdformat.gazebo_releases import warn_of_releases
+from sdf_pose_bridge.sdformat.source_formats import source_format_of, SourceFormat
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.templates import check_is_expanded
 from sdf_pose_bridge.sdformat.urdf.conversion import sdf_from_urdf
 from sdf_pose_bridge.sdformat.versions import convert, Version, version_from_text
 from sdf_pose_bridge.sdformat.xml_file import xml_from_file
-from sdf_pose_bridge.sdformat.xml_tree import written_tag, XmlElement
+from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 
 class Document(NamedTuple):
     """One file as a tree."""
 
     path: str
+    source_format: SourceFormat
     root: XmlElement
     """The ``sdf`` element."""
-    urdf_root: str | None = None
-    """The name of the root link, for URDF that is read as ROS reads it; else None."""
+    urdf_root: str = ''
+    """The name of the root link, for URDF; else empty."""
     gazebo_children: Mapping[int, Place] = MappingProxyType({})
     """For URDF the places of the children of ``<gazebo>`` elements, by their indices in the file,
     without those that are left out."""
@@ -59,20 +61,15 @@ def document_from_file(
     sources.problems.extend(file.warnings)
     check_is_expanded(root, path, file.text, sources)
     warn_of_releases(root, sources)
+    source_format = source_format_of(root, sources.place(root))
     gazebo_children: dict[int, Any] = {}
-    urdf_root = None
-    if root.tag == 'robot':
+    if source_format is SourceFormat.URDF:
         gazebo_children = dict(enumerate(root.xpath('gazebo/*')))
         for child in map(gazebo_children.pop, left_out):
             child.getparent().remove(child)
-        root, root_link = sdf_from_urdf(root, sources, is_included=is_included)
-        if not is_included:
-            urdf_root = root_link
-            # All links and joints are converted; further problems come from <gazebo> elements.
-            sources.problems.are_for_gazebo = True
-        sources.add_tree(path, root, file.lines)
-    place = Place(path, sources.line(root))
-    version = _declared_version(root, place)
+    root, urdf_root = _sdf_from(source_format, root, sources, is_included=is_included)
+    sources.add_tree(path, root, file.lines)  # a new one if it was converted
+    version = _declared_version(root, sources.place(root))
     sources.versions[path] = version
     # A colon may be written as a character reference.
     # Python finds one byte much faster than two.
@@ -85,17 +82,27 @@ def document_from_file(
                'in the implicit root, which has no frames')
         sources.error(AttributeInvalidError, pose, msg)
         del pose.attrib['relative_to']
-    return Document(path, root, urdf_root, {
+    return Document(path, source_format, root, urdf_root, {
         index: sources.place(child) for index, child in gazebo_children.items()})
 
 
+def _sdf_from(
+    source_format: SourceFormat, root: XmlElement, sources: Sources, *, is_included: bool,
+) -> tuple[XmlElement, str]:
+    """Return the ``sdf`` element, and the name of the root link of URDF."""
+    match source_format:
+        case SourceFormat.SDFORMAT:
+            return root, ''
+        case SourceFormat.URDF:
+            converted = sdf_from_urdf(root, sources, is_included=is_included)
+            # All links and joints are converted; further problems come from <gazebo> elements.
+            sources.problems.are_for_gazebo |= not is_included
+            return converted
+
+
 def _declared_version(root: XmlElement, place: Place) -> Version:
-    place_of_root = place._replace(element=f'/{written_tag(root)}')
-    if root.tag != 'sdf':
-        msg = f'the outermost element is <{written_tag(root)}>, it must be <sdf> or <robot>'
-        raise ParsingError(msg, place_of_root)
     text = root.get('version')
     if text is None:
         msg = '<sdf> declares no version, such as version="1.10"'
-        raise FileReadError(msg, place_of_root)
+        raise FileReadError(msg, place)
     return version_from_text(text, place)

@@ -26,6 +26,7 @@ from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.poses import pose_format_of, pose_from_text
+from sdf_pose_bridge.sdformat.source_formats import source_format_of, SourceFormat
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.urdf.robot import robot_from_tree, RobotJoint
 from sdf_pose_bridge.sdformat.urdf.values import pose_from_xyz_rpy
@@ -55,11 +56,11 @@ class PoseText:
         self._path, place = path, Place(path)
         file = xml_from_bytes(content, path)
         root = file.root
-        self.is_urdf = root.tag == 'robot'
+        self.source_format = source_format_of(root, place)
         for warning in file.warnings:
             msg = f'{warning.message}; correct this before a pose is set in the file'
             raise PoseNotSetError(msg, warning.place)
-        if not self.is_urdf and (
+        if self.source_format is SourceFormat.SDFORMAT and (
                 version_from_text(root.get('version', ''), place) < _FIRST_WITH_POSE):
             msg = (f'this is SDFormat {root.get("version")}, which writes poses in another way; '
                    f'convert the file to {_FIRST_WITH_POSE} or newer first')

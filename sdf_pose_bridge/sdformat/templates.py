@@ -15,6 +15,7 @@ from lxml import etree
 
 from sdf_pose_bridge.errors import ParsingError, Place
 from sdf_pose_bridge.printed_text import shortened
+from sdf_pose_bridge.sdformat.source_formats import SourceFormat
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import text_of, written_tag, XmlElement
 
@@ -130,7 +131,7 @@ def _refuse_xacro(root: XmlElement, path: str, sources: Sources) -> None:
     locations of meshes, change no frame; the first one causes a warning.
     """
     name = Path(path).name
-    is_xacro, is_sdf = name.endswith('.xacro'), root.tag == 'sdf'
+    is_xacro, is_sdf = name.endswith('.xacro'), root.tag == SourceFormat.SDFORMAT.tag
     location = None
     for xml in _EXPANDED_PARTS(root):
         tag, parent = written_tag(xml), xml.getparent()

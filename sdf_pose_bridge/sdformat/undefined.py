@@ -14,6 +14,7 @@ from itertools import filterfalse
 
 from sdf_pose_bridge.nearest_names import NameIndex
 from sdf_pose_bridge.sdformat.grammar import Definition, definition_of
+from sdf_pose_bridge.sdformat.source_formats import SourceFormat
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import URDF_TAGS
 from sdf_pose_bridge.sdformat.xml_tree import with_ancestors, written_tag, XmlElement
@@ -42,13 +43,15 @@ class UndefinedReporter:
     """
     Warns of undefined elements and attributes.
 
-    :param root: the definition of the outermost element, ``sdf`` or ``robot``.
+    :param source_format: the format that defines them.
     """
 
-    def __init__(self, sources: Sources, root: str = 'sdf') -> None:
+    def __init__(
+        self, sources: Sources, source_format: SourceFormat = SourceFormat.SDFORMAT,
+    ) -> None:
         self._sources = sources
-        self._root = root
-        self._hints = _HINTS if root == 'sdf' else {}
+        self._format = source_format
+        self._hints = _HINTS if source_format is SourceFormat.SDFORMAT else {}
         self._found_hints: dict[tuple[str, str], str] = {}
         self._last: tuple[object, ...] = ()
 
@@ -113,8 +116,7 @@ class UndefinedReporter:
 
     def _warn(self, xml: XmlElement, what: str, hint: str) -> None:
         ending = f'; {hint}' if hint else ''
-        language = 'SDFormat' if self._root == 'sdf' else 'URDF'
-        self._sources.warning(xml, f'{what} is not defined in {language}{ending}')
+        self._sources.warning(xml, f'{what} is not defined in {self._format.title}{ending}')
 
     def _hint(self, definition: Definition, name: str) -> str:
         return self._hints.get(f'{definition.identifier}/{name}') or self._hints.get(name, '')
@@ -140,8 +142,8 @@ class UndefinedReporter:
 
     def _outer_holder(self, tag: str, xml: XmlElement) -> list[str]:
         """Return the nearest element around an element that can hold another one."""
-        definition = definition_of(self._root, has_frames=True)
-        holder, holders = self._root, list[str]()
+        holder, holders = self._format.tag, list[str]()
+        definition = definition_of(holder, has_frames=True)
         for outer in reversed([*with_ancestors(xml)][:-1]):
             if tag in definition.children:
                 holders = [f'<{holder}>']

@@ -26,6 +26,7 @@ import sys
 from typing import NamedTuple, TypeAlias
 
 from sdf_pose_bridge.errors import FileReadError, Place
+from sdf_pose_bridge.sdformat.source_formats import SourceFormat
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 
 _MARKS = (
@@ -39,6 +40,8 @@ _DECLARATION = re.compile(rb'\s*<\?xml[^>]*?encoding\s*=\s*["\']([A-Za-z0-9._-]+
 
 _ALLOWED = re.compile(r'utf-(8|16|32)(-[bl]e)?|ascii|iso8859-[0-9]+|cp125[0-9]')
 """Python's names of the accepted encodings."""
+
+_RANKS = {each.tag: rank for rank, each in enumerate(reversed(SourceFormat), 1)}
 
 _SPACE = f'[{WHITE_SPACE}]*'
 _NAME = r'[^\W\d][\w:.\-]*|:[\w:.\-]*'
@@ -167,7 +170,7 @@ class _Repairer:
                 self._note('an end tag without a start tag; the text behind it is not read')
                 break
             else:
-                rank = {'sdf': 2, 'robot': 1}.get(token['tag'], 0)
+                rank = _RANKS.get(token['tag'], 0)
                 if not self._open and rank > highest_rank and not is_mismatched:
                     highest_rank = rank
                     if self._is_after_root:

@@ -22,6 +22,7 @@ from sdf_pose_bridge.names import JOINT_SUFFIX, unused_name
 from sdf_pose_bridge.printed_text import shortened
 from sdf_pose_bridge.sdformat.grammar import definition_of, Item
 from sdf_pose_bridge.sdformat.inertials import MOMENTS
+from sdf_pose_bridge.sdformat.source_formats import SourceFormat
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import URDF_JOINT_TYPES
 from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
@@ -138,7 +139,7 @@ def robot_from_tree(root: XmlElement, sources: Sources, *, is_included: bool) ->
         are the name of a link change, each with a warning.
     :raises SdfError: if it is not valid; its ``errors`` has all errors.
     """
-    UndefinedReporter(sources, 'robot').report_tree(root, definition_of('robot'))
+    UndefinedReporter(sources, SourceFormat.URDF).report_tree(root, definition_of('robot'))
     errors = sources.with_own_problems()
     if root.get('name') is None:
         errors.error(ParsingError, root, 'the robot has no name')

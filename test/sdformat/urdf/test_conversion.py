@@ -15,6 +15,7 @@ from urdf_texts import gazebo, joint, link, origin, robot, shape
 from sdf_pose_bridge import load, load_text
 from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.source_formats import SourceFormat
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.urdf.conversion import sdf_from_urdf
 from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
@@ -240,7 +241,7 @@ def test_fixed_joint_leaves_two_frames_in_an_include(included):
     assert (kinds['n::j'], kinds['n::b']) == ('frame', 'frame')
     assert scene.pose('n::b')[:3] == (6.0, 0.0, 0.0)
     assert scene.joints == ()
-    assert scene.urdf_root is None
+    assert (scene.source_format, scene.urdf_root) == (SourceFormat.SDFORMAT, '')
 
 
 def test_fixed_joint_stays_for_ros_with_all_that_its_link_has():
