@@ -54,7 +54,7 @@ _QUOTED = re.compile(r'"([^"]*)"')
 
 
 def shortened_message(message: str) -> str:
-    """Return at most 2000 characters of a message, with shorter values in double quotes."""
+    """Return a message of ``_LONGEST_MESSAGE`` characters at most, with shorter quoted values."""
     return _QUOTED.sub(
         lambda match: f'"{shortened(match[1])}"', shortened(message, _LONGEST_MESSAGE))
 

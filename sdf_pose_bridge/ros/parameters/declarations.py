@@ -235,7 +235,8 @@ class Settings:
         ['*'],
         'The frames that get a topic ~/poses/<frame> with their pose in pose_frame.',
         'glob patterns for frame ids, such as robot/* (which matches robot/arm/tool too); '
-        'none if empty; * alone means none if there are more than 1000 frames, ?* means all',
+        f'none if empty; * alone means none if there are more than {rules.MOST_TOPICS} frames, ?* '
+        'means all',
         tuple, most_characters=rules.MOST_CHARACTERS,
     )
     optical_frames = _switch(

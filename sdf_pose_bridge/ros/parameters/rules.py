@@ -49,6 +49,9 @@ MOST_VALUES = 1000
 """Largest number of patterns or directories of a parameter. Each pattern is compared with each
 frame, and each directory is searched for each include."""
 
+MOST_TOPICS = 1000
+"""Largest number of topics that are made by default; each takes time and memory."""
+
 MOST_CHARACTERS = 255
 """Largest length of a name or a pattern; a prefix is part of every frame id."""
 

@@ -14,9 +14,11 @@ from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
-MOST_PUBLISHERS = 1010
-"""The recipes for networks in docs/ros_interface.md were measured with so many: the topics of the
-poses of 1000 frames, and a few others."""
+from sdf_pose_bridge.ros.parameters.rules import MOST_TOPICS
+
+MOST_PUBLISHERS = MOST_TOPICS + 10
+"""The recipes for networks in docs/ros_interface.md were measured with so many: the topics of
+poses, and a few others."""
 
 
 class Topic(NamedTuple):

@@ -12,15 +12,12 @@ from typing import NamedTuple
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.ros.log_lines import names_in_line
 from sdf_pose_bridge.ros.parameters.declarations import Settings, SettingsError
-from sdf_pose_bridge.ros.parameters.rules import MODEL_FIELD, WORLD_FIELD
+from sdf_pose_bridge.ros.parameters.rules import MODEL_FIELD, MOST_TOPICS, WORLD_FIELD
 from sdf_pose_bridge.tf.frame_ids import LONGEST_NAME, SHORTEST_LIMIT, topic_name_from_frame_id
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 
 LONGEST_FULL_NAME = 246
 """Largest length of the full name of a topic in the middleware."""
-
-MOST_BY_DEFAULT = 1000
-"""Largest number of topics that are made by default; each takes time and memory."""
 
 MOST_STEPS = 1_000_000_000
 """Largest product of the characters of all patterns with wildcards and of all frame ids. Comparing
@@ -60,15 +57,15 @@ def pose_topics_from_patterns(
     Choose the frames that get a topic, and name the topics.
 
     :param patterns: glob patterns; ``*`` matches any text, slashes included. A frame is chosen if
-        one of them matches the whole of its id. ``*`` alone chooses at most ``MOST_BY_DEFAULT``.
+        one of them matches the whole of its id. ``*`` alone chooses at most ``MOST_TOPICS``.
     :param node_name: full name of the node, which precedes the names.
     """
     limit = min(LONGEST_NAME, LONGEST_FULL_NAME - len(f'{node_name}/poses/'))
     with_wildcards = [pattern for pattern in patterns if _WILDCARD.search(pattern)]
     reason = ''
-    if list(patterns) == ['*'] and len(frame_ids) > MOST_BY_DEFAULT:
+    if list(patterns) == ['*'] and len(frame_ids) > MOST_TOPICS:
         reason = (
-            f'{len(frame_ids)} frames are more than {MOST_BY_DEFAULT}; name those that you want '
+            f'{len(frame_ids)} frames are more than {MOST_TOPICS}; name those that you want '
             'in pose_topics, such as "robot/*", or ask for all with "?*"')
     elif limit < SHORTEST_LIMIT:
         reason = (
@@ -186,9 +183,9 @@ def check_number_of_topics(settings: Settings, positions: JointPositions | None)
             ('model_pose_topics', positions.free_models, 'models that can move')):
         patterns = dict.fromkeys(settings.values[parameter])
         count = sum(len(models) if MODEL_FIELD in each else 1 for each in patterns)
-        if count > MOST_BY_DEFAULT:
+        if count > MOST_TOPICS:
             sentence = (
                 f'{parameter} names {count} topics with {len(models)} {what}, and at most '
-                f'{MOST_BY_DEFAULT} are allowed; set it without {MODEL_FIELD}, or publish some of '
+                f'{MOST_TOPICS} are allowed; set it without {MODEL_FIELD}, or publish some of '
                 'the models by another node')
             raise SettingsError([sentence])
