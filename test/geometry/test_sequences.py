@@ -14,13 +14,20 @@ pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sdf_pose_bridge.geometry.formats import format_from_name, POSE_FORMATS, ROTATION_FORMATS
 from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion, quaternion_from_rpy
-from sdf_pose_bridge.geometry.sequences import angle_sequence
 
-AXES = {axes: angle_sequence(axes) for axes in map(''.join, itertools.product('xyz', repeat=3))
+AXES = {axes: format_from_name(f'r{axes}', ROTATION_FORMATS).sequence
+        for axes in map(''.join, itertools.product('xyz', repeat=3))
         if axes[0] != axes[1] != axes[2]}
 every_sequence = pytest.mark.parametrize('axes', AXES)
 angle = st.floats(-7.0, 7.0)
+
+
+@pytest.mark.parametrize('name', [*POSE_FORMATS, *ROTATION_FORMATS])
+def test_a_format_has_one_of_these_sequences_or_none(name):
+    sequence = {**POSE_FORMATS, **ROTATION_FORMATS}[name].sequence
+    assert sequence is None or any(sequence is each for each in AXES.values())
 
 
 @every_sequence
