@@ -19,7 +19,6 @@ from sdf_pose_bridge.ros.following.simulator import MOST_OTHERS
 from sdf_pose_bridge.ros.node.services import MOST_NUMBERS
 from sdf_pose_bridge.ros.parameters.declarations import DECLARATIONS
 from sdf_pose_bridge.ros.parameters.rules import (
-    HIGHEST_FREQUENCY,
     LOWEST_RATE,
     MOST_TOPICS,
     MOST_VALUES,
@@ -49,7 +48,6 @@ def test_a_limit_of_a_load_is_in_the_table(name):
     ('security.md', f'message of `joint_states` | {MOST_NUMBERS:,}; {MOST_BYTES // MEGABYTE} MB'),
     ('joints.md', f'at most {MOST_TOPICS} topics'),
     ('errors.md', f'a world of more than {MOST_TOPICS} frames'),
-    ('ros_interface.md', f'in Hz ({LOWEST_RATE} to {HIGHEST_FREQUENCY:g}) on `/tf`'),
     ('ros_interface.md', f'with more than {MOST_TOPICS} frames'),
     ('ros_interface.md', f'at most {MOST_NUMBERS:,} numbers'),
     ('ros_interface.md', f'other entity of the simulator, at most {MOST_OTHERS} |'),
@@ -60,10 +58,13 @@ def test_a_limit_is_in_the_sentence_about_it(page, words):
 
 @pytest.mark.parametrize('name', [
     name for name, declaration in DECLARATIONS.items() if declaration.maximum is not None])
-def test_a_range_of_rates_is_in_the_params_file(name):
+def test_a_range_of_rates_is_on_the_page_and_in_the_params_file(name):
+    highest = DECLARATIONS[name].maximum
+    page = (ROOT / 'docs/ros_interface.md').read_text()
+    assert re.search(rf'\| `{name}` \|.*\({LOWEST_RATE} to {highest:g}\)', page)
     comment = (ROOT / 'config/bridge.yaml').read_text().partition(f'\n    {name}:')[0]
     words = ' '.join(comment.rpartition('\n\n')[2].replace('#', '').split())
-    assert f'from {LOWEST_RATE} to {DECLARATIONS[name].maximum}' in words
+    assert f'from {LOWEST_RATE} to {highest}' in words
 
 
 def test_the_longest_message_is_in_the_sentence_about_it():

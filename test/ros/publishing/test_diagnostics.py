@@ -2,7 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """What diagnostics say of a state: its level, its sentence and its values."""
 
+import re
+
 from diagnostic_msgs.msg import DiagnosticStatus
+from folders import ROOT
 import pytest
 
 from sdf_pose_bridge.export.scene_from_request import loaded_scene_from_request
@@ -72,6 +75,12 @@ def test_a_failed_load_is_an_error_whatever_is_served(status_of):
     assert status.level == DiagnosticStatus.ERROR
     assert status.message == (
         'the last load failed, the scene before it is published: cell.sdf:3: first')
+
+
+def test_the_page_about_the_topic_lists_the_values(status_of):
+    page = (ROOT / 'docs/ros_interface.md').read_text()
+    (row,) = (line for line in page.splitlines() if line.startswith('| `/diagnostics` |'))
+    assert re.findall('`([^`]+)`', row)[1:] == [value.key for value in status_of(GOOD).values]
 
 
 def test_the_values_describe_what_is_served_and_what_is_wrong(status_of, tmp_path):
