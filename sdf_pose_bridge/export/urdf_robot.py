@@ -24,7 +24,7 @@ from sdf_pose_bridge.printed_text import quoted_names
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.sdformat.joints import JointAxis, Mimic
+from sdf_pose_bridge.sdformat.joints import JointAxis, Mimic, NO_REFERENCE, Reference
 from sdf_pose_bridge.sdformat.source_formats import SourceFormat
 from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.frames import is_same_place, LINK_SUFFIX
@@ -41,14 +41,6 @@ _LONGEST_NAMES = 50_000_000
 length, and a text is copied several times before it is written."""
 
 
-class UrdfMimic(NamedTuple):
-    """The joint that a joint follows: ``multiplier * position + offset``."""
-
-    joint: str
-    multiplier: float
-    offset: float
-
-
 class UrdfJoint(NamedTuple):
     """A joint of URDF."""
 
@@ -60,8 +52,7 @@ class UrdfJoint(NamedTuple):
     origin: Pose
     """Its pose in its parent link, also the pose of its child link at zero."""
     axis: JointAxis | None = None
-    """Its axis with limits and dynamics; None for a fixed joint."""
-    mimic: UrdfMimic | None = None
+    """Its axis with limits, dynamics, and the joint that it follows; None for a fixed joint."""
 
 
 class UrdfLink(NamedTuple):
@@ -137,7 +128,7 @@ class _RobotMaker:
         self._joint_names: dict[str, int] = {}
         self._dofs: dict[tuple[int, int | None], tuple[str, Mimic | None]] = {}
         """For each degree of freedom the name of its joint, and the joint that it follows."""
-        self._leaders: dict[str, UrdfMimic | str] = {}
+        self._leaders: dict[str, Mimic | str] = {}
         """For joints that mimic another one the joint that they follow in the end, or the reason
         why there is none."""
         self._children: defaultdict[str, list[UrdfLink]] = defaultdict(list)
@@ -211,7 +202,8 @@ class _RobotMaker:
             steps.append((name, turning if dof.rad_per_unit else 'prismatic', axis))
             if dof.is_screw and dof.number is not None:
                 # A screw joint slides too.
-                follows = Mimic(dof.joint.element, dof.number, dof.m_per_unit, 0.0, 0.0)
+                follows = Mimic(
+                    NO_REFERENCE, dof.number, dof.m_per_unit, 0.0, joint=dof.joint.element)
                 steps.append((
                     unused_name(f'{name}{SLIDE_SUFFIX}', self._joint_names), 'prismatic',
                     JointAxis(axis.xyz, mimic=follows)))
@@ -237,8 +229,8 @@ class _RobotMaker:
             child = name if is_last else unused_name(
                 self._naming.frame_id_from_name(f'{step}{LINK_SUFFIX}'), self._link_names)
             self._add(child, link if is_last else -1, UrdfJoint(
-                step, joint_type, parent, origin, axis,
-                self._mimic(step, axis.mimic, joint.element)))
+                step, joint_type, parent, origin,
+                axis._replace(mimic=self._mimic(step, axis.mimic, joint.element))))
             parent, origin = child, Pose()
         if not is_at_joint:
             self._add(name, link, UrdfJoint(
@@ -247,7 +239,7 @@ class _RobotMaker:
     def _add(self, name: str, element: int, joint: UrdfJoint) -> None:
         self._children[joint.parent].append(UrdfLink(name, element, joint))
 
-    def _mimic(self, name: str, follows: Mimic | None, element: int) -> UrdfMimic | None:
+    def _mimic(self, name: str, follows: Mimic | None, element: int) -> Mimic | None:
         """Return the joint that a joint follows in the end, as not all readers follow several."""
         found = None if follows is None else self._leader(name, follows)
         if isinstance(found, str):
@@ -256,10 +248,10 @@ class _RobotMaker:
             return None
         return found
 
-    def _leader(self, name: str, follows: Mimic | None) -> UrdfMimic | str:
+    def _leader(self, name: str, follows: Mimic | None) -> Mimic | str:
         """Return the joint that a joint follows in the end, or the reason why there is none."""
         passed: dict[str, Mimic] = {}
-        found: UrdfMimic | str
+        found: Mimic | str
         while follows is not None and name not in self._leaders:
             passed[name] = follows
             name, next_follows = self._dofs.get((follows.joint, follows.axis), ('', None))
@@ -269,11 +261,11 @@ class _RobotMaker:
                 break
             follows = next_follows
         else:
-            found = self._leaders.get(name, UrdfMimic(name, 1.0, 0.0))
+            found = self._leaders.get(name, Mimic(Reference(name), 0, 1.0, 0.0))
         for passed_name, mimic in reversed(passed.items()):
-            if isinstance(found, UrdfMimic):
-                found = UrdfMimic(
-                    found.joint, mimic.multiplier * found.multiplier,
+            if isinstance(found, Mimic):
+                found = Mimic(
+                    found.leader, 0, mimic.multiplier * found.multiplier,
                     mimic.multiplier * (found.offset - mimic.reference) + mimic.offset)
             self._leaders[passed_name] = found
         return found

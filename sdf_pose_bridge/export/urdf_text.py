@@ -163,11 +163,11 @@ class UrdfWriter:
             etree.SubElement(
                 xml, 'dynamics', damping=_numbers([axis.damping]),
                 friction=_numbers([axis.friction]))
-        if joint.mimic is not None:
-            name, multiplier, offset = joint.mimic
+        if axis.mimic is not None:
             etree.SubElement(
-                xml, 'mimic', joint=name, multiplier=_numbers([multiplier]),
-                offset=_numbers([offset]))
+                xml, 'mimic', joint=axis.mimic.leader.name,
+                multiplier=_numbers([axis.mimic.multiplier]),
+                offset=_numbers([axis.mimic.offset]))
 
     # Links
 

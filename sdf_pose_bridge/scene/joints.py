@@ -26,7 +26,7 @@ from sdf_pose_bridge.names import MODEL_FRAME, SEPARATOR, WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.name_scopes import NameScopes
 from sdf_pose_bridge.sdformat.elements import Elements, NO_ELEMENT
-from sdf_pose_bridge.sdformat.joints import AXIS_TAGS, DEFAULT_END, MimicDetails, Reference
+from sdf_pose_bridge.sdformat.joints import AXIS_TAGS, DEFAULT_END, Mimic, Reference
 
 
 class JointEnds(NamedTuple):
@@ -72,7 +72,7 @@ class JointChecks:
             return joint
         return found
 
-    def _leader(self, joint: int, tag: str, mimic: MimicDetails | None) -> int:
+    def _leader(self, joint: int, tag: str, mimic: Mimic | None) -> int:
         if mimic is None:
             return NO_ELEMENT
         name, scope = mimic.leader.name, self._scopes.scope_of[joint]

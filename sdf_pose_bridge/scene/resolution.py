@@ -32,7 +32,7 @@ from sdf_pose_bridge.sdformat.documents import Document
 from sdf_pose_bridge.sdformat.elements import Elements, NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.inertials import Inertial, moments_from_matrix, moved_moments
-from sdf_pose_bridge.sdformat.joints import JointAxis, Mimic
+from sdf_pose_bridge.sdformat.joints import JointAxis, NO_REFERENCE
 
 _Details = TypeVar('_Details')
 _NO_AXIS = JointAxis((0.0, 0.0, 1.0))
@@ -120,15 +120,15 @@ def _joint(
 ) -> Joint:
     details = elements.joints[ends.joint]
     axes = []
-    for written, (expressed_in, leader) in zip(details.axes, ends.axes, strict=True):
-        if written is None:
+    for axis, (expressed_in, leader) in zip(details.axes, ends.axes, strict=True):
+        if axis is None:
             axes.append(_NO_AXIS)
             continue
         leader = new_index_of[leader]
-        axes.append(written.axis._replace(
-            xyz=_axis_in_joint(written.axis.xyz, expressed_in, ends.joint, poses),
-            mimic=None if written.mimic is None or leader == NO_ELEMENT else Mimic(
-                leader, *written.mimic[1:])))
+        axes.append(axis._replace(
+            xyz=_axis_in_joint(axis.xyz, expressed_in, ends.joint, poses),
+            expressed_in=NO_REFERENCE,
+            mimic=axis.mimic._replace(joint=leader) if axis.mimic and leader >= 0 else None))
     return Joint(
         new_index_of[ends.joint], details.type, new_index_of[ends.parent],
         new_index_of[ends.child], (axes[0], axes[1]), details.screw_pitch_m)

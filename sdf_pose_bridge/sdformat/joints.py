@@ -40,6 +40,9 @@ class Reference(NamedTuple):
     line: int = 0
 
 
+NO_REFERENCE = Reference('')
+
+
 class Mimic(NamedTuple):
     """
     The joint axis that an axis follows.
@@ -47,13 +50,15 @@ class Mimic(NamedTuple):
     Its position is ``multiplier * (position of the leader - reference) + offset``.
     """
 
-    joint: int
-    """The joint of the leader, as an index into the scene."""
+    leader: Reference
+    """The joint of the leader."""
     axis: int
     """The axis of that joint: 0 for ``<axis>``, 1 for ``<axis2>``."""
     multiplier: float
     offset: float
-    reference: float
+    reference: float = 0.0
+    joint: int = -1
+    """In a scene the index of that joint."""
 
 
 class JointAxis(NamedTuple):
@@ -65,7 +70,9 @@ class JointAxis(NamedTuple):
     """
 
     xyz: tuple[float, float, float]
-    """Unit vector in the frame of the joint."""
+    """As written and not zero; in a scene a unit vector in the frame of the joint."""
+    expressed_in: Reference = NO_REFERENCE
+    """The frame that the vector is expressed in; empty for the frame of the joint."""
     lower: float = -math.inf
     """Lower limit of the position, in radians or metres."""
     upper: float = math.inf
@@ -81,27 +88,6 @@ class JointAxis(NamedTuple):
     """Force without a velocity."""
 
 
-class MimicDetails(NamedTuple):
-    """A :class:`Mimic` as written."""
-
-    leader: Reference
-    """The joint that the axis follows."""
-    axis: int
-    multiplier: float
-    offset: float
-    reference: float
-
-
-class AxisDetails(NamedTuple):
-    """An axis of a joint, with its references as written."""
-
-    axis: JointAxis
-    """Its vector is as written, and not zero; it has no mimic yet."""
-    expressed_in: Reference
-    """The frame that the vector is expressed in; empty for the frame of the joint."""
-    mimic: MimicDetails | None
-
-
 class JointDetails(NamedTuple):
     """Details of a joint."""
 
@@ -109,13 +95,10 @@ class JointDetails(NamedTuple):
     """As SDFormat spells it: ``revolute``, ``fixed``, ..."""
     parent: Reference
     child: Reference
-    axes: tuple[AxisDetails | None, AxisDetails | None]
+    axes: tuple[JointAxis | None, JointAxis | None]
     """``<axis>`` and ``<axis2>``, if they are given."""
     screw_pitch_m: float
     """Movement of a screw joint along its axis in one turn; positive for a right-handed thread."""
-
-
-_NO_REFERENCE = Reference('')
 
 
 def joint_details_from_element(
@@ -154,7 +137,7 @@ def _end(
     if element is None:
         msg = f'the joint has no <{tag}>; it must name a frame'
         sources.error(ElementMissingError, xml, msg)
-        return _NO_REFERENCE
+        return NO_REFERENCE
     name = value_of(element)
     if name == ROOT_FRAME:
         msg = f'"{name}" is reserved; it cannot be the {tag} of a joint'
@@ -165,9 +148,9 @@ def _end(
 
 def _axis(
     joint: XmlElement, axis: XmlElement, sources: Sources, *, reads_dynamics: bool,
-) -> AxisDetails:
+) -> JointAxis:
     children = first_children(axis)
-    expressed_in = _NO_REFERENCE
+    expressed_in = NO_REFERENCE
     xyz = children.get('xyz')
     if xyz is not None and xyz.keys():
         expressed_in = Reference(attribute_of(xyz, 'expressed_in'), sources.line(xyz))
@@ -182,10 +165,9 @@ def _axis(
         msg = (f'the limits {lower:g} to {upper:g} of joint "{attribute_of(joint, "name")}" are '
                'radians; they look like degrees')
         sources.warning(children['limit'], msg)
+    mimic = _mimic(joint, axis, children.get('mimic'), sources)
     dynamics = _dynamics(axis) if reads_dynamics else ()
-    return AxisDetails(
-        JointAxis((x, y, z), lower, upper, None, *dynamics), expressed_in,
-        _mimic(joint, axis, children.get('mimic'), sources))
+    return JointAxis((x, y, z), expressed_in, lower, upper, mimic, *dynamics)
 
 
 def _has_dof(joint_type: str, motion: Motion) -> bool:
@@ -208,7 +190,7 @@ def _dynamics(axis: XmlElement) -> Sequence[float]:
 
 def _mimic(
     joint: XmlElement, axis: XmlElement, xml: XmlElement | None, sources: Sources,
-) -> MimicDetails | None:
+) -> Mimic | None:
     if xml is None:
         return None
     leader = attribute_of(xml, 'joint')
@@ -221,7 +203,7 @@ def _mimic(
     if msg:
         sources.error(MimicError, xml, msg)
         return None
-    return MimicDetails(
+    return Mimic(
         Reference(leader, sources.line(xml)), AXIS_TAGS.index(leader_tag),
         number_of_child(xml, 'multiplier', 1.0), number_of_child(xml, 'offset', 0.0),
         number_of_child(xml, 'reference', 0.0))

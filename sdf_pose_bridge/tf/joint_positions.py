@@ -58,14 +58,6 @@ class UnreportedJoints(enum.Enum):
     """They are at zero, as in the file."""
 
 
-class Follower(NamedTuple):
-    """A degree of freedom whose position follows from the position of another one."""
-
-    dof: int
-    leader: int
-    mimic: Mimic
-
-
 class Selection(NamedTuple):
     """The degrees of freedom of a list of names."""
 
@@ -75,7 +67,7 @@ class Selection(NamedTuple):
     """The degree of freedom of each of these entries."""
     coordinates: NDArray[np.intp]
     """The coordinates of each: shape (k,) for joints, (k, 7) for free models."""
-    followers: tuple[Follower, ...]
+    followers: list[int]
     """Other degrees of freedom that follow these; each after its leader."""
     changed: list[int]
     """All of these, which get a position."""
@@ -138,17 +130,18 @@ class JointPositions:
             scene.own_name(each.element) for each in scene.joints if each.type == 'fixed')
         """Names that messages may have, too: JointStatePublisher of Gazebo sends all joints."""
         self._slides = frozenset(each.name + SLIDE_SUFFIX for each in dofs if each.is_screw)
-        self._followers: dict[int, list[Follower]] = {}
-        self._is_leader = np.ones(len(self.names), np.bool_)
-        leaders = {(each.joint.element, each.number): dof for dof, each in enumerate(dofs)}
+        self._followers: dict[int, list[int]] = {}
+        self._leaders: dict[int, tuple[int, Mimic]] = {}
+        """For each degree of freedom that follows another one, that one and how."""
+        indices = {(each.joint.element, each.number): dof for dof, each in enumerate(dofs)}
         for dof, each in enumerate(dofs):
             mimic, lower = each.axis.mimic, each.axis.lower
             if lower == each.axis.upper and abs(lower) <= LARGEST_POSITION:
                 self._is_assumed[dof], self.values[dof] = True, lower
-            if mimic is not None and (mimic.joint, mimic.axis) in leaders:
-                leader = leaders[mimic.joint, mimic.axis]
-                self._followers.setdefault(leader, []).append(Follower(dof, leader, mimic))
-                self._is_leader[dof] = False
+            if mimic is not None and (mimic.joint, mimic.axis) in indices:
+                leader = indices[mimic.joint, mimic.axis]
+                self._followers.setdefault(leader, []).append(dof)
+                self._leaders[dof] = leader, mimic
 
     @property
     def models(self) -> tuple[str, ...]:
@@ -188,10 +181,10 @@ class JointPositions:
             free models.
         """
         joints, models, named = dict[int, str](), list[str](), {*self._indices[''].values()}
-        for dof in np.flatnonzero(self._is_leader & ~self.is_known).tolist():
+        for dof in np.flatnonzero(~self.is_known).tolist():
             if self.is_model(dof):
                 models.append(self.names[dof])
-            elif dof in named:
+            elif dof in named and dof not in self._leaders:
                 joints.setdefault(self._motion.elements[dof], self.names[dof])
         return list(joints.values()), models
 
@@ -204,23 +197,23 @@ class JointPositions:
         indices = self._indices[model]
         rows = [row for row, name in enumerate(names) if name in indices]
         dofs = [indices[names[row]] for row in rows]
-        reached: dict[int, Follower | None] = dict.fromkeys(dofs)
-        for leader in (changed := list(reached)):
+        changed = list(dict.fromkeys(dofs))
+        count, reached = len(changed), set(changed)
+        for leader in changed:
             for follower in self._followers.get(leader, ()):
-                if follower.dof not in reached:
-                    reached[follower.dof] = follower
-                    changed.append(follower.dof)
+                if follower not in reached:
+                    reached.add(follower)
+                    changed.append(follower)
         indices_of_dofs = np.array(dofs, np.intp)
         return Selection(
             np.array(rows, np.intp), indices_of_dofs, indices_of_dofs,
-            tuple(filter(None, reached.values())), changed,
-            np.unique(self._models[changed]).tolist())
+            changed[count:], changed, np.unique(self._models[changed]).tolist())
 
     def selection_of_models(self, dofs: Sequence[int]) -> Selection:
         """Return the degrees of freedom of free models, for a message that has their poses."""
         indices = np.array(dofs)
         return Selection(
-            np.arange(len(dofs)), indices, self._motion.coordinates(indices), (), list(dofs),
+            np.arange(len(dofs)), indices, self._motion.coordinates(indices), [], list(dofs),
             np.unique(self._models[indices]).tolist())
 
     def unknown(self, names: Iterable[str], model: str = '') -> list[str]:
@@ -256,7 +249,8 @@ class JointPositions:
         changed = self.values.copy()
         changed[selection.coordinates[is_taken]] = new[is_taken]
         is_changed = set(dofs[is_taken].tolist())
-        for dof, leader, mimic in selection.followers:
+        for dof in selection.followers:
+            leader, mimic = self._leaders[dof]
             value = mimic.multiplier * (changed[leader] - mimic.reference) + mimic.offset
             if leader in is_changed and abs(value) <= LARGEST_POSITION:
                 changed[dof] = value
