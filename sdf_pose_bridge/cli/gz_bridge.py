@@ -24,7 +24,6 @@ from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.gazebo_topics import GROUPS, ROS_TYPES
 from sdf_pose_bridge.sdformat.limits import MissingInclude
-from sdf_pose_bridge.sdformat.source_formats import SourceFormat
 from sdf_pose_bridge.tf.bridged_topics import bridged_topics, BridgedTopic
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
@@ -86,7 +85,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _scene_of_gazebo(scene: Scene, options: argparse.Namespace) -> Scene:
     """Return a robot of URDF as Gazebo has it: with the sensors of links that it lumps."""
-    if scene.source_format is not SourceFormat.URDF or not Path(scene.path).is_file():
+    if not scene.is_urdf or not Path(scene.path).is_file():
         return scene
     text = (f'<sdf version="1.12"><model name={quoteattr(scene.names[1])}><include merge="true">'
             f'<uri>{escape(str(Path(scene.path).absolute()))}</uri></include></model></sdf>')

@@ -263,8 +263,7 @@ def _change_of_origin(
     """Find the change of the ``<origin>`` of a joint of URDF that moves an element to a pose."""
     name = scene.own_name(element)
     scope = scene.names[element].removesuffix(name)
-    is_included = scene.source_format is not SourceFormat.URDF
-    for number, joint in text.joints_to_move(name, is_included=is_included):
+    for number, joint in text.joints_to_move(name, is_included=not scene.is_urdf):
         # The link "world" is the frame of the model.
         parent = scene.index(scope + joint.parent, world=scene.world_of(element)) if (
             scene.has(scope + joint.parent)) else int(scene.parents[element])

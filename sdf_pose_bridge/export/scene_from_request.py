@@ -56,7 +56,7 @@ def loaded_scene_from_request(
         scene, tree.moving.motion, options.model, request.unreported_joints,
         is_spawned=bool(request.model_name))
     description = '' if tree.world else _description_from(scene.source_format, text)
-    if makes_urdf and scene.source_format is not SourceFormat.URDF:
+    if makes_urdf and not scene.is_urdf:
         description, warnings_of_urdf = _urdf(scene, request)
         warnings += warnings_of_urdf
     # The tree and the URDF may have the same warnings.

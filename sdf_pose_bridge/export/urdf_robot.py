@@ -25,7 +25,6 @@ from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.joints import JointAxis, Mimic, NO_REFERENCE, Reference
-from sdf_pose_bridge.sdformat.source_formats import SourceFormat
 from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.frames import is_same_place, LINK_SUFFIX
 from sdf_pose_bridge.tf.joint_motion import DegreeOfFreedom, JointMotion
@@ -85,7 +84,7 @@ def robot_from_scene(scene: Scene, options: TfOptions) -> UrdfRobot:
     :raises SdfError: if the file is URDF, if there is no such model, or none is named where there
         are several, or if its frames cannot have these names.
     """
-    if scene.source_format is SourceFormat.URDF:
+    if scene.is_urdf:
         msg = 'the file is URDF already'
         raise UrdfNotMadeError(msg, Place(scene.path))
     model = _model(scene, options.model)

@@ -137,6 +137,11 @@ class Scene(ReadOnly):
     """The root link of a URDF that is the file or the text itself; else empty. If it is called
     ``world``, it is the implicit root."""
 
+    @property
+    def is_urdf(self) -> bool:
+        """Whether the file or the text itself is URDF."""
+        return self.source_format is SourceFormat.URDF
+
     def __repr__(self) -> str:
         return f'<Scene of {self.path}: {len(self.names)} elements>'
 

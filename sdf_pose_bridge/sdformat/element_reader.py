@@ -41,6 +41,7 @@ from sdf_pose_bridge.sdformat.plugins import plugins_of, sensor_details_from_ele
 from sdf_pose_bridge.sdformat.poses import EULER_RPY, pose_format_of, pose_numbers_from_text
 from sdf_pose_bridge.sdformat.shapes import check_material, check_submesh, shape_of
 from sdf_pose_bridge.sdformat.sibling_names import check_scoped_names, SiblingNames
+from sdf_pose_bridge.sdformat.source_formats import SourceFormat
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import URDF_TAGS
 from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
@@ -102,7 +103,7 @@ class ElementReader:
         self._reads_plugins = plugins
         self._table = ElementsBuilder(sources.paths, has_shapes=shapes)
         self._names = SiblingNames(self._table, sources)
-        self._undefined = UndefinedReporter(sources)
+        self._undefined = UndefinedReporter(sources, SourceFormat.SDFORMAT)
         self._readers_of_details: dict[Kind, tuple[str, Callable[[XmlElement], Any]]] = {
             Kind.MODEL: ('models', _model_details),
             Kind.FRAME: ('frames', lambda xml: FrameDetails(

@@ -46,9 +46,7 @@ class UndefinedReporter:
     :param source_format: the format that defines them.
     """
 
-    def __init__(
-        self, sources: Sources, source_format: SourceFormat = SourceFormat.SDFORMAT,
-    ) -> None:
+    def __init__(self, sources: Sources, source_format: SourceFormat) -> None:
         self._sources = sources
         self._format = source_format
         self._hints = _HINTS if source_format is SourceFormat.SDFORMAT else {}

@@ -27,7 +27,6 @@ from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.joints import AXIS_TAGS
-from sdf_pose_bridge.sdformat.source_formats import SourceFormat
 from sdf_pose_bridge.sdformat.specification import JOINT_TYPES
 from sdf_pose_bridge.tf.joint_motion import JointMotion
 from sdf_pose_bridge.tf.parents import tf_parents_from_scene
@@ -150,10 +149,8 @@ def names_of_moved(old: Scene, new: Scene) -> list[str]:
 
 def _frames(scene: Scene) -> dict[int, None]:
     """Return the elements without worlds, implicit roots, and the model of a URDF, in order."""
-    is_frame = scene.parents >= 0
-    if scene.source_format is SourceFormat.URDF:
-        is_frame &= (scene.kinds != Kind.MODEL) | (scene.parents != 0)
-    return dict.fromkeys(np.flatnonzero(is_frame).tolist())
+    is_of_urdf = (scene.kinds == Kind.MODEL) & (scene.parents == 0) & scene.is_urdf
+    return dict.fromkeys(np.flatnonzero((scene.parents >= 0) & ~is_of_urdf).tolist())
 
 
 def _old_of_new(old: Scene, new: Scene) -> dict[int, int]:

@@ -25,7 +25,6 @@ from sdf_pose_bridge.geometry.chains import ends_from_pointers, Indices
 from sdf_pose_bridge.names import scoped_name
 from sdf_pose_bridge.scene.scene import Joint, Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.sdformat.source_formats import SourceFormat
 
 ROOT_IS_PARENT = -1
 """Parent of a frame whose parent is the root frame."""
@@ -110,10 +109,10 @@ def tf_parents_from_scene(scene: Scene) -> TfParents:
                 if neighbor in neighbors:
                     joints[neighbor], parents[neighbor] = joint, body
                     waiting.append(neighbor)
-    is_urdf = scene.source_format is SourceFormat.URDF
     is_free = (kinds == Kind.LINK) | ((kinds == Kind.MODEL) & (scene.canonical_links < 0))
     is_free[list(joints)] = False
-    parents[is_free] = 0 if is_urdf else _parents_of_free_bodies(scene, representatives)[is_free]
+    parents[is_free] = 0 if scene.is_urdf else (
+        _parents_of_free_bodies(scene, representatives)[is_free])
     return TfParents(parents, joints, loop_joints)
 
 

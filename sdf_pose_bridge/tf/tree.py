@@ -27,7 +27,6 @@ from sdf_pose_bridge.printed_text import quoted_names
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Joint, ReadOnly, Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.sdformat.source_formats import SourceFormat
 from sdf_pose_bridge.tf.anchors import AnchorModels, AnchorPatterns, detached_bodies
 from sdf_pose_bridge.tf.frame_ids import frame_ids_with_sensors, FrameNames, FrameNaming
 from sdf_pose_bridge.tf.frames import (
@@ -259,7 +258,7 @@ def _published_elements(scene: Scene, options: TfOptions, problems: Problems) ->
 
 def _kinds(scene: Scene, options: TfOptions) -> frozenset[Kind]:
     """Return the kinds of element that become frames."""
-    if scene.source_format is not SourceFormat.URDF:
+    if not scene.is_urdf:
         return DEFAULT_KINDS if options.kinds is None else options.kinds
     # Robots of one type have the same name, and a frame has one parent.
     return (frozenset({Kind.LINK}) if options.kinds is None else options.kinds) - {Kind.MODEL}

@@ -3,12 +3,12 @@
 """Each format is read as SDFormat, and named in messages and in the scene."""
 
 import pytest
-from sdf_pose_bridge.export.published_scene import LoadRequest
-from sdf_pose_bridge.export.scene_from_request import loaded_scene_from_request
 from sdf_texts import LINK, model_file
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.errors import ParsingError
+from sdf_pose_bridge.export.published_scene import LoadRequest
+from sdf_pose_bridge.export.scene_from_request import loaded_scene_from_request
 from sdf_pose_bridge.sdformat.pose_writing import PoseText
 from sdf_pose_bridge.sdformat.source_formats import SourceFormat
 
