@@ -8,14 +8,14 @@ from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from sdf_pose_bridge.errors import AttributeInvalidError, FileReadError, Place
+from sdf_pose_bridge.errors import AttributeInvalidError, Place
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.sdformat.gazebo_releases import warn_of_releases
 from sdf_pose_bridge.sdformat.source_formats import source_format_of, SourceFormat
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.templates import check_is_expanded
 from sdf_pose_bridge.sdformat.urdf.conversion import sdf_from_urdf
-from sdf_pose_bridge.sdformat.versions import convert, Version, version_from_text
+from sdf_pose_bridge.sdformat.versions import convert, version_of
 from sdf_pose_bridge.sdformat.xml_file import xml_from_file
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
@@ -69,7 +69,7 @@ def document_from_file(
             child.getparent().remove(child)
     root, urdf_root = _sdf_from(source_format, root, sources, is_included=is_included)
     sources.add_tree(path, root, file.lines)  # a new one if it was converted
-    version = _declared_version(root, sources.place(root))
+    version = version_of(root, sources.place(root))
     sources.versions[path] = version
     # A colon may be written as a character reference.
     # Python finds one byte much faster than two.
@@ -98,11 +98,3 @@ def _sdf_from(
             # All links and joints are converted; further problems come from <gazebo> elements.
             sources.problems.are_for_gazebo |= not is_included
             return converted
-
-
-def _declared_version(root: XmlElement, place: Place) -> Version:
-    text = root.get('version')
-    if text is None:
-        msg = '<sdf> declares no version, such as version="1.10"'
-        raise FileReadError(msg, place)
-    return version_from_text(text, place)

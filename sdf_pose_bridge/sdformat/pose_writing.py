@@ -31,11 +31,11 @@ from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.urdf.robot import robot_from_tree, RobotJoint
 from sdf_pose_bridge.sdformat.urdf.values import pose_from_xyz_rpy
 from sdf_pose_bridge.sdformat.values import number_from_word
-from sdf_pose_bridge.sdformat.versions import Version, version_from_text
+from sdf_pose_bridge.sdformat.versions import Version, version_of
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file, START_TAG, xml_from_bytes
 from sdf_pose_bridge.sdformat.xml_tree import first_child, text_of, words_of, written_tag
 
-_FIRST_WITH_POSE = Version(1, 4)
+_WITH_POSES = Version(1, 4)
 _TEXT_AFTER_COMMENTS = re.compile(rb'(?:\s*<!--.*?-->)*([^<]*)', re.DOTALL)
 _WORD = re.compile(rb'[^ \t\n\r]+')
 _INDENTATION = re.compile(rb'\s*?(\r?\n[ \t]*)?(?=<)')
@@ -60,10 +60,9 @@ class PoseText:
         for warning in file.warnings:
             msg = f'{warning.message}; correct this before a pose is set in the file'
             raise PoseNotSetError(msg, warning.place)
-        if self.source_format is SourceFormat.SDFORMAT and (
-                version_from_text(root.get('version', ''), place) < _FIRST_WITH_POSE):
+        if self.source_format is SourceFormat.SDFORMAT and version_of(root, place) < _WITH_POSES:
             msg = (f'this is SDFormat {root.get("version")}, which writes poses in another way; '
-                   f'convert the file to {_FIRST_WITH_POSE} or newer first')
+                   f'convert the file to {_WITH_POSES} or newer first')
             raise PoseNotSetError(msg, place)
         self._encoding = file.encoding
         # With its byte order mark.

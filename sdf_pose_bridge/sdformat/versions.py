@@ -15,7 +15,7 @@ from typing import NamedTuple, TypeAlias
 
 from lxml import etree
 
-from sdf_pose_bridge.errors import ConversionError, Place
+from sdf_pose_bridge.errors import ConversionError, FileReadError, Place
 from sdf_pose_bridge.names import MODEL_FRAME, SEPARATOR, WORLD_FRAME
 from sdf_pose_bridge.sdformat.grammar import PARTS_OF_MODEL, REFERENCE_ATTRIBUTES
 from sdf_pose_bridge.sdformat.sources import Sources
@@ -87,12 +87,17 @@ def version_numbers(text: str) -> tuple[int, ...]:
     return ()
 
 
-def version_from_text(text: str, place: Place) -> Version:
+def version_of(root: XmlElement, place: Place) -> Version:
     """
-    Read a version such as ``1.10``.
+    Read the version of a file, such as ``1.10``.
 
+    :raises FileReadError: if it is not declared.
     :raises ConversionError: if it is older than :data:`OLDEST`, or newer than :data:`NEWEST`.
     """
+    text = root.get('version')
+    if text is None:
+        msg = '<sdf> declares no version, such as version="1.10"'
+        raise FileReadError(msg, place)
     if text in _SUPPORTED:
         return _SUPPORTED[text]
     msg = f'version="{text}" is not supported; versions {OLDEST} to {NEWEST} are'
