@@ -55,7 +55,9 @@ def loaded_scene_from_request(
     joint_positions = None if tree.moving is None else JointPositions(
         scene, tree.moving.motion, options.model, request.unreported_joints,
         is_spawned=bool(request.model_name))
-    description = '' if tree.world else _description_from(scene.source_format, text)
+    match scene.source_format:
+        case SourceFormat.SDFORMAT | SourceFormat.URDF:  # readers of the topic know both
+            description = '' if tree.world else unicode_text(text)
     if makes_urdf and not scene.is_urdf:
         description, warnings_of_urdf = _urdf(scene, request)
         warnings += warnings_of_urdf
@@ -76,13 +78,6 @@ def loaded_scene_from_request(
         read_since_ns=read_since_ns,
         seconds=time.perf_counter() - begin,
     )
-
-
-def _description_from(source_format: SourceFormat, text: str | bytes) -> str:
-    """Return the given text, for the readers of ``robot_description``."""
-    match source_format:
-        case SourceFormat.SDFORMAT | SourceFormat.URDF:
-            return unicode_text(text)
 
 
 def _urdf(scene: Scene, request: LoadRequest) -> tuple[str, tuple[SdfWarning, ...]]:

@@ -63,12 +63,18 @@ def document_from_file(
     warn_of_releases(root, sources)
     source_format = source_format_of(root, sources.place(root))
     gazebo_children: dict[int, Any] = {}
-    if source_format is SourceFormat.URDF:
-        gazebo_children = dict(enumerate(root.xpath('gazebo/*')))
-        for child in map(gazebo_children.pop, left_out):
-            child.getparent().remove(child)
-    root, urdf_root = _sdf_from(source_format, root, sources, is_included=is_included)
-    sources.add_tree(path, root, file.lines)  # a new one if it was converted
+    urdf_root = ''
+    match source_format:
+        case SourceFormat.SDFORMAT:
+            pass
+        case SourceFormat.URDF:
+            gazebo_children = dict(enumerate(root.xpath('gazebo/*')))
+            for child in map(gazebo_children.pop, left_out):
+                child.getparent().remove(child)
+            root, urdf_root = sdf_from_urdf(root, sources, is_included=is_included)
+            sources.add_tree(path, root, file.lines)
+            # All links and joints are converted; further problems come from <gazebo> elements.
+            sources.problems.are_for_gazebo |= not is_included
     version = version_of(root, sources.place(root))
     sources.versions[path] = version
     # A colon may be written as a character reference.
@@ -84,17 +90,3 @@ def document_from_file(
         del pose.attrib['relative_to']
     return Document(path, source_format, root, urdf_root, {
         index: sources.place(child) for index, child in gazebo_children.items()})
-
-
-def _sdf_from(
-    source_format: SourceFormat, root: XmlElement, sources: Sources, *, is_included: bool,
-) -> tuple[XmlElement, str]:
-    """Return the ``sdf`` element, and the name of the root link of URDF."""
-    match source_format:
-        case SourceFormat.SDFORMAT:
-            return root, ''
-        case SourceFormat.URDF:
-            converted = sdf_from_urdf(root, sources, is_included=is_included)
-            # All links and joints are converted; further problems come from <gazebo> elements.
-            sources.problems.are_for_gazebo |= not is_included
-            return converted

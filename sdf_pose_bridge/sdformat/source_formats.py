@@ -11,15 +11,17 @@ from sdf_pose_bridge.sdformat.xml_tree import written_tag, XmlElement
 
 
 class SourceFormat(enum.Enum):
-    """The format of a file; in a file with several outermost elements, the first one is read."""
+    """
+    The format of a file: its name, and the tag of the outermost element.
+
+    Of several outermost elements, the one of the first format is read.
+    """
 
     SDFORMAT = 'SDFormat', 'sdf'
     URDF = 'URDF', 'robot'
 
     def __init__(self, title: str, tag: str) -> None:
-        self.title = title
-        self.tag = tag
-        """The tag of the outermost element."""
+        self.title, self.tag = title, tag
 
 
 def source_format_of(root: XmlElement, place: Place) -> SourceFormat:
