@@ -56,7 +56,7 @@ class Named:
     """
     The names around it, and its own.
 
-    Items of lists are numbers such as ``#1``; ``<a>2`` is an element, and ``a{3`` has a bracket.
+    Items of lists are numbers such as ``#1``; ``a<2`` is an element, and ``a{3`` has a bracket.
     """
     words: list[str]
     """Shared with a name around it if it has none."""
@@ -194,9 +194,8 @@ class _Reader:
             raise PoseFormatError(msg)
         top, self._count = self._open[-1], self._count + 1
         # Brackets and elements of one name are several, but keys are given twice.
-        part = f'<{name}>{self._count}' if end == _TAG else (
-            f'{name}{{{self._count}' if name and end else name or (
-                f'#{self._count}' if is_item else ''))
+        mark = '<' if end == _TAG else '{' if name and end else '#' if is_item else ''
+        part = f'{name}{mark}{self._count}' if mark else name
         new = Named(name or ('' if is_item else top.name), (*top.path, part) if part else top.path,
                     [] if name else top.words, kind, end, self._column, self._line,
                     top.name, is_attribute=top.kind == 'element')

@@ -7,6 +7,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
+from sdf_pose_bridge.geometry.formats import PoseFormatError
+
 _BOOLEANS = {'true': True, '1': True, 'false': False, '0': False}
 
 FORMAT_ATTRIBUTES = 'rotation_format', 'degrees'
@@ -23,7 +25,7 @@ class PoseFormat(NamedTuple):
     """Whether roll, pitch and yaw are in degrees."""
 
 
-class PoseTextError(ValueError):
+class PoseTextError(PoseFormatError):
     """The text is not a pose; the message has the value and the rule."""
 
 

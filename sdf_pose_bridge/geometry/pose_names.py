@@ -4,11 +4,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 import re
 from typing import NamedTuple
 
+from sdf_pose_bridge.geometry.formats import Format, POSE_FORMATS, ROTATION_FORMATS
 from sdf_pose_bridge.geometry.named_numbers import is_number, Named, SCALARS
 
 
@@ -20,26 +21,27 @@ class Names(NamedTuple):
     width: int
     """How many numbers each has."""
     format: str
-    """That of a pose with this rotation; ``euler`` if a ``<compiler>`` says it."""
-    missing: tuple[str, ...]
-    """Numbers for missing names; empty if none may be missing."""
+    """The name in :data:`FORMATS` of a pose with this rotation; ``euler`` for MJCF's own."""
+    numbers: Sequence[str]
+    """In the tables, those for missing names if they may be missing; in a text, its own."""
 
 
 def names_of(text: str, pose_format: str = '', missing: str = '') -> Names:
     """Return names; one with ``*3`` has three numbers."""
     names, _, count = text.partition('*')
     return Names((names,) if count else (*text.split(),), int(count or 1), pose_format,
-                  (*missing.split(),))
+                 missing.split())
 
 
 # The tables
 
-MATRIX, _RPY, _XYZW = 'matrix_row_major', 'sdf_rpy', 'sdf_quat_xyzw'
+_RPY, _XYZW, _MATRIX = 'sdf_rpy', 'sdf_quat_xyzw', 'a position and a matrix'
 POSITIONS = (
     names_of('x y z'), names_of('position.x position.y position.z', missing='0 0 0'),
     names_of('position*3'), names_of('@pos*3'), names_of('t*3'), names_of('T*3'),
     names_of('--x --y --z', missing='0 0 0'))
 ROTATIONS = (
+    names_of('X Y Z A B C', 'kuka_abc'), names_of('X Y Z W P R', 'fanuc_wpr'),
     names_of('roll pitch yaw', _RPY), names_of('rpy*3', _RPY),
     names_of('rpy.roll rpy.pitch rpy.yaw', _RPY),
     names_of('orientation.roll orientation.pitch orientation.yaw', _RPY),
@@ -50,24 +52,34 @@ ROTATIONS = (
     names_of('orientation.in quaternion (xyzw)*4', _XYZW),
     names_of('quat_xyzw*4', _XYZW), names_of('quat_wxyz*4', 'mujoco'),
     names_of('@quat*4', 'mujoco'), names_of('@euler*3', 'euler'),
-    names_of('orientation*9', MATRIX), names_of('R*9', MATRIX),
+    names_of('orientation*9', _MATRIX), names_of('R*9', _MATRIX),
     names_of('--roll --pitch --yaw', _RPY, '0 0 0'),
     names_of('--qx --qy --qz --qw', _XYZW, '0 0 0 1'))
-"""Positions and rotations, each with each other. Names with @ are attributes of MJCF."""
+"""Each with each position, but for those of makers. Names with @ are attributes of MJCF."""
+QUATERNION = [names_of('x y z w', 'quaternion')]
+"""A rotation alone."""
 
 _SYNONYMS = {
     **dict.fromkeys('translation xyz pos trans point vector3'.split(), 'position'),
     **dict.fromkeys('rotation quaternion quat rot'.split(), 'orientation')}
-MAKERS = (
-    (names_of('X Y Z A B C', 'kuka_abc'), '{X ...} of KUKA'),
-    (names_of('X Y Z W P R', 'fanuc_wpr'), 'a position of FANUC'))
+PUBLISHER = 'static_transform_publisher'
 CALLS = {
-    'p': ('ur_pose', 'p[...] of Universal Robots'), 'posx': ('doosan', 'posx(...) of Doosan'),
-    'TRANS': ('kawasaki_oat', 'TRANS(...) of Kawasaki')}
+    'p': ('p[...] of Universal Robots', 'ur_pose'), 'posx': ('posx(...) of Doosan', 'doosan'),
+    'TRANS': ('TRANS(...) of Kawasaki', 'kawasaki_oat'),
+    PUBLISHER: (PUBLISHER, 'x y z yaw pitch roll', _XYZW)}
+"""For each name before numbers, a text for people and the formats of these numbers."""
+MATRICES = {9: ROTATION_FORMATS['matrix']} | dict.fromkeys(
+    (12, 16), POSE_FORMATS['matrix_row_major'])
+"""The formats of numbers behind any other name, by their count."""
+FORMATS: Mapping[str, Format] = {
+    **POSE_FORMATS, 'quaternion': ROTATION_FORMATS['quaternion'],
+    'x y z yaw pitch roll': POSE_FORMATS[_RPY]._replace(columns=(3, 4, 5)),
+    _MATRIX: MATRICES[16]._replace(position=(0, 1, 2), columns=(*range(3, 12),), last_row=())}
+TEXTS = {
+    'kuka_abc': '{X ...} of KUKA', 'fanuc_wpr': 'a position of FANUC', 'quaternion': 'x y z w'}
+"""Texts for people about names that have all numbers of a format."""
 COLUMN_MAJOR = re.compile('(O|F|EE|NE)_T_(EE|NE|K)(_[cd])?')
 """Names of matrices in messages of libfranka."""
-PUBLISHER = 'static_transform_publisher'
-LAST_ROW = '0', '0', '0', '1'
 _IN_LIST = r'\[\s*[^\[\],]+' + r'(?:,[^\[\],]+)'
 FRAME_OF_ABB = re.compile(
     rf'\[\s*({_IN_LIST}{{2}}\]\s*,\s*{_IN_LIST}{{3}}\])'
@@ -92,7 +104,7 @@ UNITS = {
     **dict.fromkeys('deg degree degrees'.split(), 'deg'),
     **dict.fromkeys('rad radian radians'.split(), 'rad')}
 KNOWN = {name for part in (*POSITIONS, *ROTATIONS) for name in part.names} | {
-    name for form, _ in MAKERS for name in form.names} | {'args', 'arguments', 'position'}
+    'args', 'arguments', 'position'}
 
 
 @lru_cache(maxsize=1000)

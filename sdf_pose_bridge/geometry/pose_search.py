@@ -15,16 +15,14 @@ from sdf_pose_bridge.geometry.formats import (
     format_from_name,
     POSE_FORMATS,
     PoseFormatError,
-    ROTATION_FORMATS,
 )
 from sdf_pose_bridge.geometry.named_numbers import is_number, Named, named_from_text, SCALARS
 from sdf_pose_bridge.geometry.pose_attributes import (
     boolean_from_text,
     FORMAT_ATTRIBUTES,
     pose_format_from_attributes,
-    PoseTextError,
 )
-from sdf_pose_bridge.geometry.pose_names import name_in_tables, Names, names_of, numbers_of
+from sdf_pose_bridge.geometry.pose_names import FORMATS, name_in_tables, Names, numbers_of
 from sdf_pose_bridge.geometry.units import DEGREES, RADIANS
 from sdf_pose_bridge.printed_text import listed, shortened
 
@@ -43,11 +41,6 @@ class FoundPose(NamedTuple):
     """Clauses for people."""
     name: str = ''
     """The name of a pose in a list; empty if it has none."""
-
-    @property
-    def text_format(self) -> str:
-        """The name of the text as a format that is printed too, if it is one."""
-        return {'<pose>': 'sdf_pose', '<origin>': 'urdf_origin'}.get(self.text, self.text)
 
 
 def poses_from_text(text: str, source: Format | None) -> Sequence[FoundPose]:
@@ -75,23 +68,14 @@ def poses_from_text(text: str, source: Format | None) -> Sequence[FoundPose]:
 
 def _plain(name: str) -> str:
     """Return a name of a text without what tells it from others of the same name."""
-    return re.sub(r'\A<|>\d+\Z|\{\d+\Z', '', name)
+    return re.sub('[<{#][0-9]+$', '', name)
 
 
 def _text(names: Sequence[str]) -> str:
     return ' '.join(name.lstrip('@') for name in names)
 
 
-class _Part(NamedTuple):
-    """A position or a rotation in a text."""
-
-    words: Sequence[str]
-    names: tuple[str, ...] = ()
-    format: str = 'sdf_rpy'
-    """That of a pose with this rotation."""
-
-
-_ZEROS = _Part([*'000'])
+_ZEROS = tables.names_of('', 'sdf_rpy', '0 0 0')
 
 
 class _Search:
@@ -157,7 +141,8 @@ class _Search:
             paths[0][place]}]
         if len(places) != 1 or len({*map(len, paths)}) > 1 or len(
                 {pose.format.name for pose in self.poses}) > 1:
-            names = dict.fromkeys('.'.join(map(_plain, path)) for path in paths)
+            names = dict.fromkeys(
+                '.'.join(_plain(part) or part for part in path) for path in paths)
             msg = f'the text has several poses, which are no list: {listed([*names], 3)}'
             raise PoseFormatError(msg)
         return [pose._replace(name=self._name_of(pose.path, places[0])) for pose in self.poses]
@@ -168,28 +153,25 @@ class _Search:
             for name in ('child_frame_id', 'name'):
                 if (named := self._groups.get(path[:end], {}).get(name)) is not None:
                     return ' '.join(named.words)
-        return '' if path[place][0] in '#<' or path[place] != _plain(path[place]) else path[place]
+        return path[place] if path[place] == _plain(path[place]) else ''
 
     # Names of a group
 
     def _read_group(self, path: tuple[str, ...]) -> None:
         group = self._groups[path]
-        for names, text in tables.MAKERS:
-            if (part := self._part(path, (names,))) is not None:
-                self._add_pose(path, part, POSE_FORMATS[part.format], text)
-                return
         arguments = group.get('args') or group.get('arguments')
         if arguments and any(each.words == [tables.PUBLISHER] for each in group.values()):
-            self._read_publisher(' '.join(arguments.words).split(), path)
+            self._read_call(tables.PUBLISHER, ' '.join(arguments.words).split(), path)
         position = self._part(path, tables.POSITIONS)
         rotation = self._part(path, tables.ROTATIONS)
         part = position or rotation
         if part is None:
             return
-        around = next((_plain(each).lower() for each in reversed(path) if each[0] != '#'), '')
+        around = next(filter(None, map(_plain, reversed(path))), '').lower()
         if not rotation and 'w' in group and around in ('', 'quaternion'):
-            if quaternion := self._part(path, (names_of('x y z w'),)):
-                self._add_pose(path, quaternion, ROTATION_FORMATS['quaternion'], 'x y z w')
+            rotation = self._part(path, tables.QUATERNION)
+        if rotation and (text := tables.TEXTS.get(rotation.format)):
+            self._add_pose(path, rotation, FORMATS[rotation.format], text)
             return
         first, _, is_dotted = part.names[0].partition('.')
         may_be_missing = around == 'origin' or first[:2] == '--' or bool(
@@ -197,6 +179,7 @@ class _Search:
             and group[first].name.lower() in tables.OF_ROS)
         others = dict.fromkeys(
             name for each in (tables.ROTATIONS if position else tables.POSITIONS)
+            if each.format not in tables.TEXTS
             for name in (*each.names, each.names[0].partition('.')[0]) if name in group)
         if not others:
             rotation = rotation or (
@@ -212,12 +195,11 @@ class _Search:
                 ' mujoco')
             raise PoseFormatError(self.fault[1] or (
                 f'"{listed(wrong)}" beside {_text(part.names)} is no {what}{hint}'))
-        if part.format != tables.MATRIX:
-            self.add_fault(len(part.words), f'the text has {_text(part.names)} without a {what}')
+        if len(part.numbers) < 9:
+            self.add_fault(len(part.numbers), f'the text has {_text(part.names)} without a {what}')
 
-    def _read_parts(self, path: tuple[str, ...], position: _Part, rotation: _Part) -> None:
-        (x, y, z), words, group = position.words, rotation.words, self._groups[path]
-        names = position.names + rotation.names
+    def _read_parts(self, path: tuple[str, ...], position: Names, rotation: Names) -> None:
+        names, group = position.names + rotation.names, self._groups[path]
         text = '<origin>' if path and _plain(path[-1]) == 'origin' else (
             tables.PUBLISHER if names[0][:2] == '--' else ', '.join(dict.fromkeys(
                 _plain(group[name].path[len(path)]) for name in names if name in group)))
@@ -227,30 +209,29 @@ class _Search:
                 f'{"r" if axes.islower() else "s"}{axes.lower()}', POSE_FORMATS)._replace(
                 angle=RADIANS if self._compiler.get('angle') == 'radian' else DEGREES)
         else:
-            pose_format = POSE_FORMATS[rotation.format]
-        words = [x, y, z, *words] if rotation.format != tables.MATRIX else [
-            *words[:3], x, *words[3:6], y, *words[6:], z, *tables.LAST_ROW]
-        self._add_pose(path, _Part(words, names), pose_format, text)
+            pose_format = FORMATS[rotation.format]
+        numbers = [*position.numbers, *rotation.numbers]
+        self._add_pose(path, rotation._replace(names=names, numbers=numbers), pose_format, text)
 
-    def _part(self, path: tuple[str, ...], parts: Sequence[Names]) -> _Part | None:
+    def _part(self, path: tuple[str, ...], parts: Sequence[Names]) -> Names | None:
         """Return the first position or rotation that is complete; raise an error for one twice."""
         group = self._groups[path]
         for part in parts:
             hits = [name for name in part.names if name in group]
             around = group.get(part.names[0].rpartition('.')[0])
-            if not hits and not (part.missing and around and not around.words and (
+            if not hits and not (part.numbers and around and not around.words and (
                     around.path not in self._groups)):
                 continue
             numbers = {name: numbers_of(group[name])[0] for name in hits}
             wrong = [name for name in hits if len(numbers[name]) != part.width]
-            missing, filled = [name for name in part.names if name not in hits], part.missing
+            missing, filled = [name for name in part.names if name not in hits], part.numbers
             if around and around.name.lower() not in tables.OF_ROS:
-                filled = ()
+                filled = []
             if filled and 'orientation.w' in missing and any(
                     float(number) for each in numbers.values() for number in each):
                 # Protobuf leaves out zeros. In a message of ROS, 1 would be the default.
                 is_protobuf = around is not None and around.kind == 'opening'
-                filled, missing = ((*'0000',), missing) if is_protobuf else ((), missing[-1:])
+                filled, missing = ([*'0000'], missing) if is_protobuf else ([], missing[-1:])
             if wrong:
                 is_one, words = part.width == 1, group[wrong[0]].words
                 # Lists of other lengths may be of other names.
@@ -267,11 +248,11 @@ class _Search:
             else:
                 words = [word for index, name in enumerate(part.names)
                          for word in numbers.get(name, filled[index:index + 1])]
-                return _Part(words, (*hits,) or part.names, part.format)
+                return part._replace(names=(*hits,) or part.names, numbers=words)
         return None
 
     def _add_pose(
-        self, path: tuple[str, ...], part: _Part, pose_format: Format, text: str,
+        self, path: tuple[str, ...], part: Names, pose_format: Format, text: str,
     ) -> None:
         """Add a pose; raise an error for names that are left over."""
         names, around = part.names, {name.rpartition('.')[0] for name in part.names}
@@ -284,7 +265,7 @@ class _Search:
                 if unit not in ('', pose_format.length.name, pose_format.angle and (
                         pose_format.angle.name)):
                     what = f'is in {unit}, and {pose_format.name} is not'
-            elif not (name in around or named.path[len(path)][0] == '<' or (
+            elif not (name in around or '<' in named.path[len(path)] or (
                     tables.BESIDE.fullmatch(name)) or (
                     is_mjcf and tables.BESIDE_MJCF.fullmatch(name))) and (
                     numbers or (named.words and tables.CHANGES.fullmatch(name))):
@@ -292,67 +273,61 @@ class _Search:
             if what:
                 msg = f'"{shortened(name.lstrip("@"))}" {what}'
                 raise PoseFormatError(msg)
-        self.poses.append(FoundPose(part.words, pose_format, text, path))
+        self.poses.append(FoundPose(part.numbers, pose_format, text, path))
 
     # Words of one name
 
     def _read_words(self, named: Named) -> None:
-        name, words = named.name.split(' ')[-1], named.words
+        name = named.name.split(' ')[-1]
         if name == 'pose' and named.kind == 'element':
             self._read_element(named)
         elif name == 'origin' and named.kind == 'element':
             if named.path not in self._groups:
                 self.poses.append(
                     FoundPose([*'000000'], POSE_FORMATS['sdf_rpy'], '<origin>', named.path))
-        elif name == tables.PUBLISHER:
-            self._read_publisher(words, named.path)
-        elif name in tables.CALLS and named.kind == 'opening':
-            maker, text = tables.CALLS[name]
-            if len(words) != 6:
-                msg = f'{text} has 6 numbers, and this one {len(words)}'
-                raise PoseFormatError(msg)
-            self.poses.append(FoundPose(words, POSE_FORMATS[maker], text, named.path))
+        elif name == tables.PUBLISHER or (name in tables.CALLS and named.kind == 'opening'):
+            self._read_call(name, named.words, named.path)
         elif len(numbers := numbers_of(named)[0]) >= 9 and not tables.NO_POSE.fullmatch(
                 named.name.lower()):
             self._read_matrix(named, numbers)
 
     def _read_matrix(self, named: Named, numbers: Sequence[str]) -> None:
-        name, is_pose = named.name, len(numbers) in (12, 16)
-        if len(numbers) not in (9, 12, 16):
-            if len(numbers) < 16:
-                self.add_fault(1, f'"{shortened(name)}" has {len(numbers)} numbers; a matrix'
-                               ' has 9, 12 or 16')
+        name, count, path = shortened(named.name), len(numbers), named.path[:-1]
+        if (pose_format := tables.MATRICES.get(count)) is None:
+            if count < 16:
+                self.add_fault(1, f'"{name}" has {count} numbers; a matrix has 9, 12 or 16')
             return
-        path = named.path[:-1]
-        if left_over := self._changes.get(path) or (not is_pose and next((
+        if left_over := self._changes.get(path) or (count == 9 and next((
                 other for other, each in self._groups[path].items()
                 if each is not named and numbers_of(each)[0] and not tables.BESIDE.fullmatch(other)
                 and not tables.NO_POSE.fullmatch(other)), '')):
-            msg = f'"{shortened(left_over)}" is left over beside {shortened(name)}'
+            msg = f'"{shortened(left_over)}" is left over beside {name}'
             raise PoseFormatError(msg)
-        wanted = self._source
-        order = 'franka_matrix' if tables.COLUMN_MAJOR.fullmatch(name) else tables.MATRIX
-        pose_format = POSE_FORMATS[order] if is_pose else ROTATION_FORMATS['matrix']
-        if wanted and len(wanted.columns) == 9 and bool(wanted.position) is is_pose:
-            pose_format = wanted
-        if len(numbers) == 12 and pose_format.last_row[0] != 12:
-            self.add_fault(
-                12, f'"{shortened(name)}" has 12 numbers, and {pose_format.name} has 16')
+        if self._source and len(self._source.columns) == 9 and (
+                bool(self._source.position) is bool(pose_format.position)):
+            pose_format = self._source
+        elif pose_format.position and tables.COLUMN_MAJOR.fullmatch(named.name):
+            pose_format = POSE_FORMATS['franka_matrix']
+        if count == 12 and pose_format.last_row[0] != 12:
+            self.add_fault(12, f'"{name}" has 12 numbers, and {pose_format.name} has 16')
         else:
-            self.poses.append(FoundPose(
-                [*numbers, *(tables.LAST_ROW if len(numbers) == 12 else ())], pose_format,
-                f'the matrix {shortened(name)}', named.path))
+            if count == 12:
+                pose_format = pose_format._replace(last_row=())
+            self.poses.append(FoundPose(numbers, pose_format, f'the matrix {name}', named.path))
 
-    def _read_publisher(self, words: Sequence[str], path: tuple[str, ...]) -> None:
-        numbers = [*takewhile(is_number, words)]
-        if len(numbers) == 6:  # x y z yaw pitch roll
-            numbers[3:] = numbers[:2:-1]
-        if len(numbers) in (6, 7):
-            name = 'sdf_rpy' if len(numbers) == 6 else 'sdf_quat_xyzw'
-            self.poses.append(FoundPose(numbers, POSE_FORMATS[name], tables.PUBLISHER, path))
+    def _read_call(self, name: str, words: Sequence[str], path: tuple[str, ...]) -> None:
+        """Read all numbers of a format behind a name, without the frames behind them."""
+        numbers = [*takewhile(is_number, words)] if name == tables.PUBLISHER else words
+        text, *names = tables.CALLS[name]
+        formats = {FORMATS[each].row_length: FORMATS[each] for each in names}
+        if pose_format := formats.get(len(numbers)):
+            self.poses.append(FoundPose(numbers, pose_format, text, path))
+        elif name != tables.PUBLISHER:
+            msg = f'{text} has 6 numbers, and this one {len(words)}'
+            raise PoseFormatError(msg)
         elif words and words[0][:2] != '--':
-            self.add_fault(9, f'{tables.PUBLISHER} has {len(numbers)} numbers; it takes x y z'
-                           ' yaw pitch roll, or x y z qx qy qz qw')
+            self.add_fault(9, f'{name} has {len(numbers)} numbers; it takes x y z yaw pitch roll,'
+                           ' or x y z qx qy qz qw')
 
     def _read_element(self, named: Named) -> None:
         """Read a ``<pose>`` of SDFormat, by its attributes."""
@@ -360,14 +335,11 @@ class _Search:
                       for name, each in self._groups.get(named.path, {}).items()}
         if not attributes.keys().isdisjoint(SCALARS):
             return
-        try:
-            is_quaternion, is_degrees = pose_format_from_attributes(
-                lambda name: attributes.get(name, ''))
-            if (degrees := attributes.get('degrees')) and boolean_from_text(degrees) is None:
-                msg = f'degrees="{shortened(degrees)}" is not a boolean (true, false, 1 or 0)'
-                raise PoseTextError(msg)
-        except PoseTextError as error:
-            raise PoseFormatError(str(error)) from error
+        is_quaternion, is_degrees = pose_format_from_attributes(
+            lambda name: attributes.get(name, ''))
+        if (degrees := attributes.get('degrees')) and boolean_from_text(degrees) is None:
+            msg = f'degrees="{shortened(degrees)}" is not a boolean (true, false, 1 or 0)'
+            raise PoseFormatError(msg)
         pose_format = POSE_FORMATS['sdf_quat_xyzw' if is_quaternion else (
             'sdf_rpy_degrees' if is_degrees else 'sdf_rpy')]
         words = named.words or [*'0000001'[:pose_format.row_length]]

@@ -69,6 +69,8 @@ class TextFormat(NamedTuple):
     """A text that is printed as a format."""
 
     format: Format
+    text: str
+    """The text of a pose that is found in it."""
     template: str
     """The text, with places for the numbers."""
 
@@ -106,7 +108,7 @@ def typed_poses_from_text(
         if found and '\n' not in text.strip() and (comment := re.search(r'\s#.*\d', text)):
             msg = f'"{shortened(comment[0])}" may hide numbers; give the lines as they are'
             raise PoseFormatError(msg)
-    if form_name and {form_name} != {each.text_format for each in found}:
+    if form_name and {TEXT_FORMATS[form_name].text} != {each.text for each in found}:
         msg = f'the text is no {form_name}'
         raise PoseFormatError(msg)
     if found and source is not None and found[0].format.name != source.name:
@@ -134,7 +136,7 @@ def typed_poses_from_text(
             source = format_from_name(source.name, ROTATION_FORMATS)._replace(angle=source.angle)
         notes = (f'read as {source.name}: {source.meaning}',)
     elif len(words) == 12 and source.last_row[:1] == (12,):
-        words, notes = [*words, *'0001'], ('the last row 0 0 0 1 is added',)
+        source, notes = source._replace(last_row=()), ('the last row 0 0 0 1 is added',)
     if len(words) != source.row_length:
         hint = '; decimals need points' if ',' in text and '.' not in text else ''
         msg = (f'{source.name} has {source.row_length} numbers ({source.meaning}), but'
@@ -308,11 +310,12 @@ def _decimal_commas(text: str) -> PoseFormatError:
 
 
 TEXT_FORMATS = {
-    'sdf_pose': TextFormat(POSE_FORMATS['sdf_rpy'], '<pose>{} {} {} {} {} {}</pose>'),
+    'sdf_pose': TextFormat(POSE_FORMATS['sdf_rpy'], '<pose>', '<pose>{} {} {} {} {} {}</pose>'),
     'urdf_origin': TextFormat(
-        POSE_FORMATS['sdf_rpy'], '<origin xyz="{} {} {}" rpy="{} {} {}"/>'),
+        POSE_FORMATS['sdf_rpy'], '<origin>', '<origin xyz="{} {} {}" rpy="{} {} {}"/>'),
     'static_transform_publisher': TextFormat(
-        POSE_FORMATS['sdf_quat_xyzw'], '--x {} --y {} --z {} --qx {} --qy {} --qz {} --qw {}')}
+        POSE_FORMATS['sdf_quat_xyzw'], 'static_transform_publisher',
+        '--x {} --y {} --z {} --qx {} --qy {} --qz {} --qw {}')}
 """The texts that are printed."""
 
 NAMES_OF_ARGUMENTS = tuple(f'--{name}' for name in (
