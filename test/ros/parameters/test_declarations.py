@@ -31,6 +31,14 @@ def test_each_field_of_a_record_is_a_parameter(record):
     assert {*record._fields} - DERIVED <= DECLARATIONS.keys()
 
 
+@pytest.mark.parametrize('record', [TfOptions, LoadRequest])
+def test_a_field_has_the_default_value_of_its_parameter(record):
+    defaults = {
+        name: default for name, default in record._field_defaults.items() if name not in DERIVED}
+    assert {name: DECLARATIONS[name].convert(DECLARATIONS[name].default)
+            for name in defaults} == defaults
+
+
 @pytest.mark.parametrize('name', DECLARATIONS)
 def test_the_default_is_a_value_that_is_allowed(name):
     DECLARATIONS[name].convert(DECLARATIONS[name].default)
