@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 from sdf_pose_bridge.geometry.formats import PoseFormatError
@@ -39,14 +38,14 @@ def boolean_from_text(text: str) -> bool | None:
     return _BOOLEANS.get(text.lower())
 
 
-def pose_format_from_attributes(value_of: Callable[[str], str]) -> PoseFormat:
+def pose_format_from_attributes(rotation_format: str, degrees: str) -> PoseFormat:
     """
     Read the format of a ``<pose>``.
 
-    :param value_of: returns the stripped value of an attribute; empty if there is none.
+    The arguments are the stripped values of ``FORMAT_ATTRIBUTES``; empty if there is none.
+
     :raises PoseTextError: if ``rotation_format`` or ``degrees`` is not valid.
     """
-    rotation_format, degrees = map(value_of, FORMAT_ATTRIBUTES)
     pose_format = PoseFormat(rotation_format == 'quat_xyzw', boolean_from_text(degrees) is True)
     if rotation_format not in ('', 'euler_rpy', 'quat_xyzw'):
         msg = f'rotation_format="{rotation_format}" must be euler_rpy or quat_xyzw'

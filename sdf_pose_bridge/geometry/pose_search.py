@@ -336,7 +336,7 @@ class _Search:
         if not attributes.keys().isdisjoint(SCALARS):
             return
         is_quaternion, is_degrees = pose_format_from_attributes(
-            lambda name: attributes.get(name, ''))
+            *(attributes.get(name, '') for name in FORMAT_ATTRIBUTES))
         if (degrees := attributes.get('degrees')) and boolean_from_text(degrees) is None:
             msg = f'degrees="{shortened(degrees)}" is not a boolean (true, false, 1 or 0)'
             raise PoseFormatError(msg)

@@ -11,13 +11,13 @@ ignored. Quaternions are normalised, unlike by libsdformat.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from functools import partial
 import math
 import re
 
 import numpy as np
 
 from sdf_pose_bridge.geometry.pose_attributes import (
+    FORMAT_ATTRIBUTES,
     pose_format_from_attributes,
     PoseFormat,
     PoseTextError,
@@ -58,7 +58,7 @@ def pose_format_of(xml: XmlElement) -> PoseFormat:
 
     :raises PoseTextError: if ``rotation_format`` or ``degrees`` is not valid.
     """
-    return pose_format_from_attributes(partial(attribute_of, xml))
+    return pose_format_from_attributes(*(attribute_of(xml, each) for each in FORMAT_ATTRIBUTES))
 
 
 def pose_from_text(text: str, pose_format: PoseFormat) -> tuple[Pose, list[str]]:

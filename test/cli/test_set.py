@@ -49,7 +49,7 @@ def test_the_file_says_the_pose(set_pose, path):
 
 
 def test_no_module_on_the_way_to_the_file_calls_one_of_a_room_above(set_pose):
-    rooms, climbs = ['sdformat', 'scene', 'tf', 'export', 'cli'], []
+    rooms, climbs = ['geometry', 'sdformat', 'scene', 'tf', 'export', 'cli'], []
 
     def height(frame):
         room = frame.f_globals['__name__'].split('.')[1:2]

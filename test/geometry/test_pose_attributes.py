@@ -19,15 +19,14 @@ def test_each_pose_has_these_attributes(name):
         'relative_to', *FORMAT_ATTRIBUTES}
 
 
-@pytest.mark.parametrize(('attributes', 'expected'), [
-    ({}, PoseFormat()), ({'degrees': 'True'}, PoseFormat(is_degrees=True)),
-    ({'rotation_format': 'quat_xyzw'}, PoseFormat(is_quaternion=True))])
-def test_attributes_are_a_format(attributes, expected):
-    assert pose_format_from_attributes(lambda name: attributes.get(name, '')) == expected
+@pytest.mark.parametrize(('rotation_format', 'degrees', 'expected'), [
+    ('', '', PoseFormat()), ('', 'True', PoseFormat(is_degrees=True)),
+    ('quat_xyzw', '', PoseFormat(is_quaternion=True))])
+def test_attributes_are_a_format(rotation_format, degrees, expected):
+    assert pose_format_from_attributes(rotation_format, degrees) == expected
 
 
-@pytest.mark.parametrize('attributes', [
-    {'rotation_format': 'quat'}, {'rotation_format': 'quat_xyzw', 'degrees': '1'}])
-def test_wrong_attributes_are_refused(attributes):
+@pytest.mark.parametrize(('rotation_format', 'degrees'), [('quat', ''), ('quat_xyzw', '1')])
+def test_wrong_attributes_are_refused(rotation_format, degrees):
     with pytest.raises(PoseTextError):
-        pose_format_from_attributes(lambda name: attributes.get(name, ''))
+        pose_format_from_attributes(rotation_format, degrees)
