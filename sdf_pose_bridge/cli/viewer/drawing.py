@@ -101,15 +101,15 @@ class VisiblePart:
         self.size_m = _extent_m(origins, boxes)
         """The extent of everything."""
         origins = origins[self.frames]
-        # A model alone is shown as a whole.
-        parts = boxes[shown.is_in_robot[self._bodies]] if scene.world_names else boxes
-        points = np.concatenate([
-            origins[shown.is_in_robot[elements[self.frames]]], parts.mean(axis=1)])
-        # So is a small thing in a world, such as a watch, but not the fence around an arm.
-        if not scene.world_names or (len(parts) and math.dist(*bounds_of_points(points))
-                                     < np.median(np.linalg.norm(np.ptp(parts, axis=1), axis=1))):
-            points = np.concatenate([points, parts.reshape(-1, 3)])
-        bounds = bounds_of_interest(origins, boxes, points)
+        robot = np.concatenate([
+            origins[shown.is_in_robot[elements[self.frames]]],
+            # A model alone is shown as a whole.
+            boxes[shown.is_in_robot[self._bodies]].mean(axis=1) if scene.world_names
+            else boxes.reshape(-1, 3)])
+        models = scene.parents[scene.parents[self._bodies]]
+        is_part = np.bincount(scene.parents[scene.kinds == Kind.LINK], minlength=1)[models] > 1
+        is_plane = np.array([scene.shapes[body].type == 'plane' for body in self._bodies], bool)
+        bounds = bounds_of_interest(origins, boxes[~is_plane], is_part[~is_plane], robot)
         self.view_m = math.dist(*bounds) or self.size_m
         """The extent of the first view, without axes."""
         self.axes_length_m = _length_of_axes(tree, self.view_m)

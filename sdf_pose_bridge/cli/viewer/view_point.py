@@ -43,15 +43,18 @@ def bounds_of_points(*points: Floats) -> Floats:
     return np.array([every.min(axis=0), every.max(axis=0)])
 
 
-def bounds_of_interest(origins: Floats, boxes: Floats, robot: Floats) -> Floats:
+def bounds_of_interest(
+    origins: Floats, boxes: Floats, is_part: NDArray[np.bool_], robot: Floats,
+) -> Floats:
     """
     Find the bounds of the first view: robots, most other frames, and the bodies at them.
 
-    Bodies that are larger than all these together, or far from them, such as a floor or a fence,
-    do not count.
+    Bodies that are far from these do not count, nor do those that are larger than all of them
+    together and the only link of their model, such as a floor.
 
     :param origins: shape (n, 3), the origins of frames.
     :param boxes: shape (m, 2, 3), the lowest and the highest corners of bodies.
+    :param is_part: shape (m,), whether the model of each body has other links.
     :param robot: shape (k, 3), the origins and the middles of bodies of models that move.
     :return: shape (2, 3): the lowest and the highest corner.
     """
@@ -65,7 +68,7 @@ def bounds_of_interest(origins: Floats, boxes: Floats, robot: Floats) -> Floats:
     sizes_m, middles = np.linalg.norm(boxes[:, 1] - boxes[:, 0], axis=1), boxes.mean(axis=1)
     is_near = (np.abs(middles - bounds.mean(axis=0)) <= 0.6 * np.ptp(bounds, axis=0) + 1e-6
                + 0.1 * extent_m).all(axis=1)
-    chosen = boxes[is_near & (sizes_m <= extent_m)]
+    chosen = boxes[is_near & (is_part | (sizes_m <= extent_m))]
     if not len(chosen) and extent_m < 0.3 * sizes_m.max(initial=0.0):
         chosen = boxes
     return bounds_of_points(bounds, chosen)

@@ -41,18 +41,26 @@ def test_home_view_has_the_whole_of_a_model_alone(drawing_of):
     assert (high >= 0.5).all()
 
 
-def test_home_view_has_the_whole_of_a_small_thing_in_a_world(drawing_of):
-    # The hand is smaller than the distance of the frames, and the case is larger.
-    small = '<geometry><box><size>0.1 0.02 0.01</size></box></geometry>'
+PLANE = '<geometry><plane><normal>0 0 1</normal><size>9 9</size></plane></geometry>'
+GROUND = f'<model name="ground"><link name="l"><visual name="v">{PLANE}</visual></link></model>'
+
+
+@pytest.mark.parametrize('ground', ['', GROUND])
+@pytest.mark.parametrize('crown_m', [0.0006, 0.0002])
+@pytest.mark.parametrize('joint', ['fixed', 'continuous', ''])
+def test_home_view_has_the_whole_of_a_watch_in_a_world(drawing_of, joint, crown_m, ground):
+    box = '<geometry><box><size>{0} {0} 0.0001</size></box></geometry>'
+    visual = f'<visual name="v">{box}</visual>'
+    crown = (f'<link name="crown"><pose>{crown_m} 0 0 0 0 0</pose>{visual.format(0.0001)}</link>'
+             f'<joint name="stem" type="{joint}"><parent>case</parent><child>crown</child>'
+             '<axis><xyz>1 0 0</xyz></axis></joint>')
     drawing, _ = drawing_of(
-        f'<model name="watch"><link name="case"><visual name="v">{BOX}</visual>'
-        f'<visual name="dial">{BOX}</visual></link><link name="hand">'
-        f'<pose>0 0 0.2 0 0 0</pose><visual name="v">{small}</visual></link>'
-        '<joint name="axis" type="continuous"><parent>case</parent><child>hand</child>'
-        '<axis><xyz>0 0 1</xyz></axis></joint></model>', text_of_file=world_file)
+        f'<model name="watch"><link name="case">{visual.format(0.001)}</link>'
+        f'{crown if joint else ""}</model>{ground}', text_of_file=world_file)
     low, high = drawing.visible.bounds
-    assert (low <= -0.5).all()
-    assert (high >= 0.5).all()
+    assert low[:2] == pytest.approx([-0.0005, -0.0005])
+    assert (high[:2] >= 0.0005).all()
+    assert (high < 0.001).all()
 
 
 def test_grid_of_a_small_part_has_millimetres(drawing_of, server, monkeypatch):

@@ -30,26 +30,28 @@ WHEELS = [[(-0.1, y - 0.5, 0), (0.1, y + 0.5, 1)] for y in (-3, 3)]
 ROW = [(x, 0, 0) for x in (*range(20), 100)]
 
 
-@pytest.mark.parametrize(('origins', 'boxes', 'robot', 'bounds'), [
-    ([], [], [], [[0, 0, 0], [0, 0, 0]]),
-    ([(0, 0, 0), (1, 2, 3)], [], [], [[0, 0, 0], [1, 2, 3]]),
-    ([(0, 0, 0)], [CUBE], [], CUBE.tolist()),
-    (ROW, [], [], [[0, 0, 0], [19, 0, 0]]),
-    (ROW, [], [(100, 0, 0)], [[0, 0, 0], [100, 0, 0]]),
-    ([(0, 0, 0), (0.5, 0.5, 2)], [FLOOR, BODY], [],
+@pytest.mark.parametrize(('origins', 'boxes', 'are_parts', 'robot', 'bounds'), [
+    ([], [], False, [], [[0, 0, 0], [0, 0, 0]]),
+    ([(0, 0, 0), (1, 2, 3)], [], False, [], [[0, 0, 0], [1, 2, 3]]),
+    ([(0, 0, 0)], [CUBE], False, [], CUBE.tolist()),
+    (ROW, [], False, [], [[0, 0, 0], [19, 0, 0]]),
+    (ROW, [], False, [(100, 0, 0)], [[0, 0, 0], [100, 0, 0]]),
+    ([(0, 0, 0), (0.5, 0.5, 2)], [FLOOR, BODY], False, [],
                  [[-0.5, -0.5, 0], [0.5, 0.5, 2]]),
-    ([(0, 0, 0), (0.5, 0.5, 2)], [DISTANT, BODY], [],
+    ([(0, 0, 0), (0.5, 0.5, 2)], [DISTANT, BODY], True, [],
                  [[-0.5, -0.5, 0], [0.5, 0.5, 2]]),
-    ([(0, 0, 0)], WHEELS, [(0, 0, 0), (0, -3, 0.5), (0, 3, 0.5)],
+    ([(0, 0, 0)], WHEELS, False, [(0, 0, 0), (0, -3, 0.5), (0, 3, 0.5)],
                  [[-0.1, -3.5, 0], [0.1, 3.5, 1]]),
+    ([(0, 0, 0), (0.1, 0, 0)], [BODY], True, [], [[-0.5, -0.5, 0], [0.5, 0.5, 1]]),
 ], ids=[
     'nothing', 'few frames', 'the body of a single frame', 'a frame far from many',
     'such a frame of a robot', 'a large body', 'a distant body',
-    'bodies of a robot with one frame'])
-def test_first_view(origins, boxes, robot, bounds):
-    assert bounds_of_interest(*(
-        np.array(each, float).reshape(-1, *shape) for each, shape in (
-            (origins, [3]), (boxes, [2, 3]), (robot, [3])))).tolist() == bounds
+    'bodies of a robot with one frame', 'a large part of a model'])
+def test_first_view(origins, boxes, are_parts, robot, bounds):
+    origins, robot = (np.array(points, float).reshape(-1, 3) for points in (origins, robot))
+    assert bounds_of_interest(
+        origins, np.array(boxes, float).reshape(-1, 2, 3), np.full(len(boxes), are_parts),
+        robot).tolist() == bounds
 
 
 def test_axes_of_frames_that_are_seen_are_in_the_view():
