@@ -230,7 +230,8 @@ class Drawing:
         if 'grid' in visible.hidden:
             return
         spacing_m = grid_spacing_m(visible.view_m)
-        text = f'{spacing_m:g} m' if spacing_m >= 0.01 else f'{1000.0 * spacing_m:g} mm'
+        per_m, unit = (1.0, 'm') if spacing_m >= 0.01 else (
+            (1e3, 'mm') if spacing_m >= 1e-4 else (1e6, '\u03bcm'))
         middle = np.round(visible.bounds.mean(axis=0)[:2] / spacing_m) * spacing_m
         width_m = 2.0 * spacing_m * np.ceil(visible.view_m / spacing_m)
         # A little above the floors of many files.
@@ -241,7 +242,7 @@ class Drawing:
             position=(*middle, height_m))
         to_camera = 0.2 * (visible.home.position - visible.home.look_at)[:2]
         nodes.add_label(
-            f'{name}/grid spacing', f'grid {text}', font_screen_scale=0.8,
+            f'{name}/grid spacing', f'grid {per_m * spacing_m:g} {unit}', font_screen_scale=0.8,
             position=(*(middle + spacing_m * np.round(to_camera / spacing_m)), height_m))
 
     def _add_surface(self, number: int, surface: DrawnSurface) -> Any:

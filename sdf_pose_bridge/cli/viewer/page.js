@@ -37,6 +37,8 @@
         node.material.transparent = true;
         node.onBeforeRender = drawing => drawing.clearDepth();
       });
+      // Each time, as the panel takes its place late, and both can be resized.
+      strip.style.maxWidth = `${renderer.domElement.clientWidth - 16}px`;
       if (frames?.parent) drawOver(renderer.domElement);
     };
   });
@@ -250,7 +252,6 @@
       : given('errors', '') + given('strip', '');
     if (text !== shownInStrip) {
       shownInStrip = strip.innerHTML = text;
-      strip.style.maxWidth = `${document.querySelector('canvas').clientWidth - 16}px`;
       document.body.append(strip);
       document.body.style.setProperty('--strip', `${strip.offsetHeight}px`);
       if (document.activeElement === field) field.scrollIntoView({block: 'nearest'});

@@ -112,10 +112,14 @@ def test_axes_of_the_root_frame_are_in_a_corner(page):
 
 def test_file_that_is_broken_at_first_is_shown_when_it_is_mended(tab, tmp_path):
     (tmp_path / 'cell.sdf').write_text(TEXT.replace('<parent>base', '<parent>bass'))
+    tab.size(800, 600)
     with view_of(tmp_path) as address:
         tab.open(address)
         errors = "document.querySelector('.strip .errors')?.innerText"
         tab.wait_for(f"{errors}.match('bass.* [(]also line 9[)]$')")
+        tab.wait_for("document.querySelector('.strip').getBoundingClientRect().right"
+                     " <= document.querySelector('canvas').clientWidth")
+        assert 'no frames' not in tab.run('document.body.innerText')
         (tmp_path / 'cell.sdf').write_text(TEXT)
         tab.wait_for(f"{ROWS}.length === 5 && !document.querySelector('.errors')")
         wait_for_name_at(tab, *point_on_screen(tab, (0.1, -0.1, 0.09)), 'arm/base, visual v')
@@ -154,6 +158,14 @@ def test_labels_are_whole_in_a_panel_that_leaves_room_to_the_scene(page, tab, sh
         each.wait_for(control(name))
         each.wait_for(LABELS_ARE_WHOLE)
         each.wait_for("document.querySelector('canvas').clientWidth >= 0.64 * innerWidth")
+
+
+def test_strip_breaks_a_long_name(page, shown):
+    name = 150 * 'n'
+    shown.file.write_text(TEXT.replace('slide', name))
+    select(page, name)
+    page.wait_for(f"""(strip => strip?.innerText.includes('{name}')
+      && strip.scrollWidth <= strip.clientWidth)(document.querySelector('.strip'))""")
 
 
 @pytest.mark.parametrize(('has_secret', 'origin'), [

@@ -63,11 +63,13 @@ def test_home_view_has_the_whole_of_a_watch_in_a_world(drawing_of, joint, crown_
     assert (high < 0.001).all()
 
 
-def test_grid_of_a_small_part_has_millimetres(drawing_of, server, monkeypatch):
+@pytest.mark.parametrize(('size_m', 'text'), [
+    (0.1, '0.01 m'), (0.05, '5 mm'), (0.001, '0.1 mm'), (0.0002, '20 \u03bcm')])
+def test_grid_has_a_unit_of_its_size(drawing_of, server, monkeypatch, size_m, text):
     labels = []
     monkeypatch.setattr(server.scene, 'add_label', lambda _, text, **options: labels.append(text))
-    drawing_of('<link name="a"/><frame name="b"><pose>0.001 0 0 0 0 0</pose></frame>')
-    assert labels == ['grid 0.1 mm']
+    drawing_of(f'<link name="a"/><frame name="b"><pose>{size_m} 0 0 0 0 0</pose></frame>')
+    assert labels == [f'grid {text}']
 
 
 def test_empty_world_says_that_it_is_empty(mesh_reader):
