@@ -3,6 +3,7 @@
 """Modules, tests and pages fit together as docs/architecture.md describes."""
 
 import ast
+from collections import defaultdict
 import re
 
 from folders import ROOT
@@ -43,6 +44,21 @@ def test_files_that_a_page_names_exist(page):
         page.read_text())
     assert [name for name in named
             if not (PACKAGE / name).exists() and not (ROOT / name).exists()] == []
+
+
+def test_the_map_lists_each_room_after_those_that_it_imports():
+    text = (ROOT / 'docs/architecture.md').read_text()
+    rooms = [room for names in re.findall(r'^\* ((?:`\w+(?:/|\.py)`(?:, )?)+):', text, re.M)
+             for room in re.findall(r'`(\w+)', names)]
+    modules = defaultdict(str)
+    for module in MODULES:
+        modules[module.parts[0].removesuffix('.py')] += (PACKAGE / module).read_text()
+    assert sorted(modules) == sorted(rooms)
+    found = [
+        (room, other) for room in rooms
+        for other in re.findall(r'^ *from sdf_pose_bridge\.(\w+)', modules[room], re.M)
+        if rooms.index(other) > rooms.index(room)]
+    assert found == []
 
 
 def names_defined_in(path):
