@@ -72,7 +72,11 @@ MUJOCO = """<mujoco><compiler angle="radian" eulerseq="XYZ"/>
     'p [1, 2, 3, 0, 0, 1.287002218]', 'posx(1000, 2000, 3000, 0, 0, 73.739795)',
     'TRANS(1000, 2000, 3000, 0, 0, 73.739795)',
     'pose: {quat_wxyz: [0.8, 0, 0, 0.6], position: [1, 2, 3]}',
-    'R: [[0.28, -0.96, 0], [0.96, 0.28, 0], [0, 0, 1]]\nt: [1, 2, 3]'])
+    'R: [[0.28, -0.96, 0], [0.96, 0.28, 0], [0, 0, 1]]\nt: [1, 2, 3]',
+    'a: xyz: [1, 2, 3]; rpy: [0, 0, 1.287002218]',
+    'a:\n  x: 1 y: 2 z: 3 rpy: [0, 0, 1.287002218]',
+    '- x: 1, y: 2, z: 3, rpy: [0, 0, 1.287002218]',
+    'a:\n  name: "[b"\n  xyz: [1, 2, 3]\n  rpy: [0, 0, 1.287002218]\nb:\n  scale: 2'])
 def test_one_pose_in_all_texts_with_names(text):
     for each in (text, f'%YAML:1.0\n# a pose\n{text}\n'):
         (pose,) = typed_poses_from_text(each)
