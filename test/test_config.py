@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The params file in config/ has every parameter of the node with its default."""
 
+import re
 
 from folders import ROOT
 import pytest
@@ -42,6 +43,22 @@ def test_a_value_is_the_default(name):
     value = values_in_file()[name]
     assert value == DEFAULTS[name]
     assert type(value) is type(DEFAULTS[name])
+
+
+def defaults_on_the_page():
+    """Return the text of each default, by the names in the row."""
+    _, *tables = (ROOT / 'docs/ros_interface.md').read_text().split('| name | default | meaning |')
+    rows = [row.split(' | ') for each in tables for row in each.partition('\n\n')[0].splitlines()]
+    return {name: row[1] for row in rows for name in re.findall(r'`(\w+)`', row[0])}
+
+
+@pytest.mark.parametrize('name', sorted(DEFAULTS.keys() - {'sdf_file', 'robot_description'}))
+def test_the_page_about_parameters_has_the_default(name):
+    default = DEFAULTS[name]
+    words = default if isinstance(default, list) else [
+        str(default).lower() if isinstance(default, bool) else str(default)]
+    shown = re.sub('[][`\'"]', '', defaults_on_the_page()[name])
+    assert shown == (', '.join(words) or 'empty')
 
 
 def test_a_node_takes_it(make_node, tmp_path):

@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The executables: their names and their defaults."""
 
+import re
+
+from folders import ROOT
 import pytest
 
 from sdf_pose_bridge.ros.node.process import PROGRAMS, ROBOT_STATE_PUBLISHER
@@ -15,6 +18,16 @@ def test_defaults_are_values_that_are_allowed_and_differ(program):
         DECLARATIONS[name].convert(value)
         assert value != DECLARATIONS[name].default
         assert type(value) is type(DECLARATIONS[name].default)
+
+
+def test_the_page_about_parameters_has_the_defaults_of_robot_state_publisher():
+    _, page = (ROOT / 'docs/ros_interface.md').read_text().split('and has these defaults:')
+    defaults = ROBOT_STATE_PUBLISHER.defaults.items()
+    off = [name for name, value in defaults if value is False]
+    others = [f'{name} {value}' for name, value in defaults if value is not False]
+    expected = f'{", ".join([*others, *off[:-1]])} and {off[-1]} false'.replace("'", '')
+    shown = re.sub("[`']", '', page.partition('.\n')[0])
+    assert shown.split() == expected.lower().split()
 
 
 def test_the_bridge_has_the_defaults_of_the_declarations():
