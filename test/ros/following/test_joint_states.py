@@ -132,6 +132,21 @@ class Following:
             header=Header(stamp=Time(sec=sec)), name=list(positions),
             position=list(positions.values())))
 
+    def hold_with_a_message(self):
+        """Have the thread wait while messages arrive; return what lets it go on."""
+        begins, goes_on, arrived = threading.Event(), threading.Event(), []
+        other = self.listener.create_subscription(JointState, '/joint_states', arrived.append, 10)
+        self.wait(lambda: other.get_publisher_count())
+        self.states._call(lambda: [begins.set(), goes_on.wait(DEADLINE_S)])
+        self.wait(begins.is_set)
+
+        def has_arrived():
+            self.send(FIRST, {'turn': 0.5})
+            return arrived
+
+        self.wait(has_arrived)
+        return goes_on.set
+
     def secs(self):
         """Return the seconds of all stamps on ``/tf``."""
         return [sec for message in self.found for sec, _ in message]
@@ -312,22 +327,20 @@ def test_other_frames_continue_with_the_positions_and_one_nanosecond_later(arm):
 
 
 def test_a_look_up_sees_the_messages_that_came_before_it(arm):
-    goes_on, seen, arrived = threading.Event(), [], []
-    other = arm.listener.create_subscription(JointState, '/joint_states', arrived.append, 10)
-    arm.wait(lambda: other.get_publisher_count())
-    arm.states._call(lambda: goes_on.wait(DEADLINE_S))
-
-    def has_arrived():
-        arm.send(FIRST, {'turn': 0.5})
-        return arrived
-
-    arm.wait(has_arrived)
+    seen, go_on = [], arm.hold_with_a_message()
     future = arm.states.current_lookup()
     future.add_done_callback(lambda _: seen.extend(arm.frames.positions.values))
     assert not future.done()
-    goes_on.set()
+    go_on()
     arm.wait(lambda: seen)
     assert 0.5 in seen
+
+
+def test_a_message_that_waits_on_a_topic_that_is_followed_no_longer_moves_nothing(arm):
+    go_on, wait = arm.hold_with_a_message(), arm.states.wait
+    arm.states.wait = lambda: [go_on(), wait()]
+    arm.follow(arm.frames, StateTopics({'other': ''}), EACH)
+    assert 0.5 not in arm.frames.positions.values
 
 
 def test_a_thread_that_does_not_answer_is_an_error(arm, monkeypatch):

@@ -90,6 +90,18 @@ def test_publishers_of_topics_that_stay_are_kept(publish, node):
     assert new.topic_name == '/bridge/transforms', 'which keeps another number of messages'
 
 
+def test_a_frame_that_begins_to_move_has_another_publisher_without_its_last_pose(node):
+    publishers, found = Publishers(node), []
+    for frames in (
+            PublishedFrames(publishers, tree_of(ARM), None, {'base': 'base', 'upper': 'upper'}),
+            frames_of_arm(publishers)):
+        frames.open_topics()
+        frames.destroy_other_publishers()
+        found.append({each.topic_name: each for each in node.publishers})
+    assert {name for name, each in found[0].items() if each is not found[1].get(name)} == {
+        '/bridge/poses/upper', '/bridge/transforms'}
+
+
 def test_another_tree_gets_another_stamp(node):
     publishers = Publishers(node)
     first = PublishedFrames(publishers, tree_of_frames('a'), None, {})

@@ -52,6 +52,10 @@ def test_messages_are_kept_as_the_topic_says(node, publishers):
     assert found['b'].durability is DurabilityPolicy.VOLATILE
 
 
+def test_a_publisher_tells_the_executor_nothing(publishers):
+    assert not publishers.opened(Topic('~/a', PoseStamped)).event_handlers
+
+
 def test_other_topics_are_destroyed(node, publishers):
     a, b, c = (Topic(f'~/{name}', PoseStamped) for name in 'abc')
     kept = publishers.opened(b)
