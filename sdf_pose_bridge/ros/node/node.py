@@ -38,7 +38,7 @@ from sdf_pose_bridge.ros.log_lines import (
     text_about_defect,
 )
 from sdf_pose_bridge.ros.node.file_follower import FileFollower
-from sdf_pose_bridge.ros.node.services import add_services, SERVICE_QOS, set_pose
+from sdf_pose_bridge.ros.node.services import add_service, add_services, set_pose
 from sdf_pose_bridge.ros.parameters.declarations import Settings, SettingsError
 from sdf_pose_bridge.ros.parameters.given import changed_settings, ParameterServices
 from sdf_pose_bridge.ros.publishing import topic_names
@@ -127,13 +127,9 @@ class SdfPoseBridge:
         add_services(self._node, self._current_lookup)
         # Like those for parameters, they are taken from the middleware one after the other.
         group = parameter_services.group
-        self._node.create_service(
-            Trigger, '~/reload', self._answer_to_reload, qos_profile=SERVICE_QOS,
-            callback_group=group)
+        add_service(self._node, Trigger, 'reload', self._answer_to_reload, group)
         if self._settings.allow_set_pose:
-            self._node.create_service(
-                SetPose, '~/set_pose', self._answer_to_set_pose, qos_profile=SERVICE_QOS,
-                callback_group=group)
+            add_service(self._node, SetPose, 'set_pose', self._answer_to_set_pose, group)
         parameter_services.start(
             lambda parameters: self._loader.run(lambda: self._set_parameters(parameters)))
 

@@ -51,9 +51,6 @@ _UNSET = ((0.0,) * 3, (0.0, 0.0, 0.0, 1.0), (0.0,) * 4)
 REFUSALS = (RotationError, PoseFormatError, UnknownFrameError, JointPositionError)
 """Exceptions about requests that are not valid."""
 
-SERVICE_QOS = qos_profile_parameters
-"""Keeps 1000 requests; the default keeps ten, so that requests of more callers would be lost."""
-
 MOST_NUMBERS = 1_000_000
 """Largest number of values in a call of ``~/convert_poses``."""
 
@@ -90,11 +87,18 @@ def add_services(node: Node, lookup: Callable[[], Awaitable[PoseLookup]]) -> Non
         (ConvertPoses, 'convert_poses', convert_poses),
         (LookupPose, 'lookup_pose', lookup_pose),
     ):
-        # A group of its own takes one request at a time. The others wait in the queue of the
-        # middleware, which has a limit.
-        node.create_service(
-            service_type, f'~/{name}', callback, qos_profile=SERVICE_QOS,
-            callback_group=MutuallyExclusiveCallbackGroup())
+        add_service(node, service_type, name, callback, MutuallyExclusiveCallbackGroup())
+
+
+def add_service(
+    node: Node, service_type: type, name: str, callback: Callable[[Any, Any], Any],
+    group: MutuallyExclusiveCallbackGroup,
+) -> None:
+    """Offer a service; its group takes one request at a time."""
+    # The others wait in the middleware, which keeps 1000 of them, and by default only ten.
+    node.create_service(
+        service_type, f'~/{name}', callback, qos_profile=qos_profile_parameters,
+        callback_group=group)
 
 
 def answer_to_convert_rotation(

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from rclpy.clock import Clock
 from rclpy.logging import get_logger
+from rclpy.qos import qos_profile_parameters
 from rclpy.time import Time
 from sdf_texts import joint, model_file, posed, world_file
 
@@ -193,7 +194,7 @@ def test_large_requests_wait_in_the_middleware_until_it_is_their_turn(
 
     service.callback = counted
     client = caller.create_client(
-        ConvertPoses, '/bridge/convert_poses', qos_profile=services.SERVICE_QOS)
+        ConvertPoses, '/bridge/convert_poses', qos_profile=qos_profile_parameters)
     other_client = caller.create_client(ConvertRotation, '/bridge/convert_rotation')
 
     spin_until(executor, lambda: client.service_is_ready() and other_client.service_is_ready())
