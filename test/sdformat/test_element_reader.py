@@ -271,7 +271,7 @@ def write_nested_files(folder, count, depth, attributes=''):
 
 
 @pytest.mark.parametrize('attributes', ['', 'merge="true"'])
-@pytest.mark.parametrize(('count', 'depth'), [(2, 160), (4, 100), (60, 7)])
+@pytest.mark.parametrize(('count', 'depth'), [(2, 160), (4, 100), (60, 7), (64, 250)])
 def test_elements_nested_too_deep_over_several_files_are_refused(
         tmp_path, count, depth, attributes):
     (error,) = errors_of_file(write_nested_files(tmp_path, count, depth, attributes))

@@ -106,6 +106,7 @@ NESTED = '<model name="l"><link name="k"/></model>'
     # What is not renamed in them.
     model_file(LINK + LINK, version='1.6'),
     model_file('<frame name="l"/><frame name="l"/>' + LINK, version='1.6'),
+    model_file(LINK + '<frame name="l"/><frame name="l"/>', version='1.6'),
     model_file(NESTED * 2, version='1.6'),
     model_file(LINK + NESTED, version='1.6'),
     world_file(
@@ -175,6 +176,12 @@ def test_later_element_is_renamed_in_old_files(content, name):
     scene = load_text(model_file(content, version='1.6'))
     assert name in names_of(scene)
     assert warning_codes(scene) == ['WARNING']
+
+
+def test_new_names_are_names_that_later_elements_cannot_have():
+    scene = load_text(model_file(
+        LINK + '<frame name="l"/><frame name="l_frame"/>', version='1.6'))
+    assert names_of(scene) == ['m', 'm::l', 'm::l_frame', 'm::l_frame_frame']
 
 
 def test_frame_of_a_world_is_renamed_in_old_files():

@@ -72,7 +72,7 @@ REFUSED = {
             '<transparency>,</transparency>', '<visibility_flags>x1</visibility_flags>'],
         ambient: ['1 1 2 1', '1 1 5e-0_1', '1 1 1 1 1', '1 1 1 red', '1 1 -0.1'],
         axis: [
-            '<xyz>0 0 9.9e-7</xyz>', '<xyz>0 1</xyz>',
+            '<xyz>0 0 9.999999974752427e-7</xyz>', '<xyz>0 1</xyz>',
             '<xyz>0 0 1</xyz><limit><lower>low</lower></limit>'],
         ode: ['<mu>-1</mu>'],
         surface: ['<bounce><restitution_coefficient>1.1</restitution_coefficient></bounce>'],
@@ -115,7 +115,7 @@ ACCEPTED = {
         '<transparency>5.</transparency>',
         '<material><render_order>1.2e-38</render_order></material>'],
     ambient: ['1 1 0.5', '1 1 nan', '1 1_0 0.5x', '1 1_0 0.5'],
-    axis: ['<xyz>0 0 1e-6</xyz>'],
+    axis: ['<xyz>0 0 9.99999997475243e-7</xyz>'],
     ode: ['<mu>1e9</mu>'],
     surface: ['<bounce><restitution_coefficient>1_0</restitution_coefficient></bounce>'],
     model: [

@@ -15,6 +15,7 @@ from sdf_texts import (
     names_of,
     part_of_model,
     TWO_LINKS,
+    world_file,
 )
 
 from sdf_pose_bridge import load_text
@@ -71,6 +72,25 @@ def test_deprecated_element_is_a_warning_that_names_the_new_one(content, version
     warnings = load_text(model_file(content, version=version)).warnings
     assert ['is deprecated' in warning.message and new in warning.message
             for warning in warnings if not warning.is_for_gazebo] == [True] * bool(new)
+
+
+# 1.3 to 1.6: elements without poses
+
+OLD_PHYSICS = ('<physics type="ode"><update_rate>1</update_rate><gravity>0 0 2</gravity><ode>'
+               '<solver><dt>3</dt></solver></ode><magnetic_field>0 0 4</magnetic_field><bullet>'
+               '<dt>5</dt></bullet></physics><frame name="f"/>')
+
+
+@pytest.mark.parametrize(('version', 'in_physics', 'in_world'), [
+    ('1.3', {'real_time_update_rate': '1', 'max_step_size': '5'}, 'gravity magnetic_field'),
+    ('1.4', {}, 'gravity magnetic_field'), ('1.5', {}, 'gravity magnetic_field'), ('1.6', {}, ''),
+])
+def test_old_elements_move_to_the_end_of_another_element(version, in_physics, in_world):
+    world = converted(world_file(OLD_PHYSICS, version=version)).find('world')
+    tags = [each.tag for each in world.find('physics')]
+    assert {each.tag: each.text for each in world.find('physics')[tags.index('bullet') + 1:]} == (
+        in_physics)
+    assert [each.tag for each in world][2:] == in_world.split()
 
 
 # 1.6 to 1.7: references of poses

@@ -127,6 +127,13 @@ def test_error_in_the_parameters_of_an_included_file_has_its_place(errors):
     assert (error.file.endswith('arm.sdf'), error.line) == (True, 8)
 
 
+def test_what_is_in_an_added_element_has_its_place(load):
+    scene = load(
+        f'<link element_id="" name="k" action="add">\n<visual name="v">{BOX}</visual></link>')
+    place = scene.place(scene.index('arm::k::v'))
+    assert (place.file.endswith('main.sdf'), place.line) == (True, 4)
+
+
 # What parameters change
 
 @pytest.mark.parametrize(('params', 'name', 'pose'), [
