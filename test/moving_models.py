@@ -36,8 +36,8 @@ POSE = (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)
 class Models:
     """A source of poses of the models ``a`` and ``a::b``."""
 
-    def __init__(self, node, placement=''):
-        scene = load_text(TEXT, plugins=True)
+    def __init__(self, node, placement='', text=TEXT):
+        scene = load_text(text, plugins=True)
         tree = tf_tree_from_scene(scene, TfOptions(
             use_joint_states=True, follows_models=True, frame_prefix='p/'))
         self.positions = JointPositions(scene, tree.moving.motion)

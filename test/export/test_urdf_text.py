@@ -163,6 +163,7 @@ def test_inertial():
 @pytest.mark.parametrize(('joint_type', 'content', 'limit'), [
     ('revolute', '', None),
     ('revolute', '<limit><effort>3</effort></limit>', {'effort': '3', 'velocity': '1e+16'}),
+    ('revolute', '<limit><velocity>3</velocity></limit>', {'effort': '1e+16', 'velocity': '3'}),
     ('revolute', '<limit><lower>-1</lower></limit>',
      {'lower': '-1', 'upper': '1e+16', 'effort': '1e+16', 'velocity': '1e+16'}),
     ('prismatic', '',

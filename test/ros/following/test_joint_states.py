@@ -551,15 +551,35 @@ def test_robots_that_start_together_share_a_message(two_arms):
 def test_the_first_message_of_a_robot_after_a_silence_does_not_wait(two_arms):
     two_arms.published((FIRST, {'turn': 0.5}, '/a/j'))
     # A topic is silent after two periods without a message.
-    for number in (1, 2, 3):
+    for number in (1, 2):
         two_arms.send(FIRST + number, {'turn': number / 10}, '/a/j')
         two_arms.wait_until_taken(number / 10)
         two_arms.set_time(START + 1001 * number)
         two_arms.wait(lambda number=number: FIRST + number in two_arms.secs())
-    two_arms.send(FIRST + 4, {'turn': 0.4}, '/a/j')
+    two_arms.send(FIRST + 3, {'turn': 0.4}, '/a/j')
     two_arms.send(FIRST, {'turn': 0.5}, '/b/j')
     two_arms.wait(lambda: [(FIRST, {'b/upper'})] in two_arms.found)
-    assert FIRST + 4 not in two_arms.secs()
+    assert FIRST + 3 not in two_arms.secs()
+
+
+def test_with_short_periods_a_robot_is_silent_after_more_than_a_second(two_arms):
+    def send_and_wait(number, *topics):
+        for topic in topics:
+            two_arms.send(FIRST + number, {'turn': number / 10}, topic)
+        two_arms.wait(lambda: two_arms.frames.positions.values.tolist().count(number / 10) == len(
+            topics))
+
+    two_arms.follow(two_arms.frames, TWO_TOPICS, rule_of(1000.0))
+    two_arms.published((FIRST, {'turn': 0.5}, '/a/j'))
+    for number, sec, topics in ((1, 1, ['/a/j']), (2, 2, ['/a/j', '/b/j']), (3, 4, ['/a/j'])):
+        send_and_wait(number, *topics)
+        two_arms.set_time(START + sec)
+        two_arms.wait(lambda number=number: FIRST + number in two_arms.secs())
+    two_arms.send(FIRST + 4, {'turn': 0.4}, '/b/j')
+    two_arms.wait(lambda: FIRST + 4 in two_arms.secs())
+    assert two_arms.found == [
+        [(FIRST, {'a/upper'})], [(FIRST + 1, {'a/upper'})], [(FIRST + 2, {'a/upper', 'b/upper'})],
+        [(FIRST + 3, {'a/upper'})], [(FIRST + 4, {'b/upper'})]]
 
 
 def test_too_many_messages_of_one_robot_leave_time_for_another(two_arms):

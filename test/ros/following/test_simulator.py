@@ -13,7 +13,8 @@ pytest.importorskip('simulation_interfaces', reason='needs simulation_interfaces
 
 from moving_models import Models
 from rclpy.service import Service
-from sdf_texts import world_file
+from rclpy.task import Future
+from sdf_texts import fixed_joint, world_file
 from simulation_interfaces.msg import EntityState, Result
 from simulation_interfaces.srv import GetEntitiesStates
 
@@ -23,6 +24,7 @@ from sdf_pose_bridge.ros.following import simulator as module
 from sdf_pose_bridge.ros.following.simulator import Simulator
 from sdf_pose_bridge.ros.log_lines import WARNING_PERIOD_S
 from sdf_pose_bridge.ros.parameters.given import settings_from_values
+from sdf_pose_bridge.ros.parameters.rules import MOST_CHARACTERS
 from sdf_pose_bridge.tf.tree import TfOptions
 
 SERVICE = '/sim/get_entities_states'
@@ -111,6 +113,19 @@ def test_a_call_without_an_answer_is_followed_by_a_second_one(
     assert not simulator._calls
 
 
+def test_the_longest_time_counts_from_the_first_call_and_the_next_one_from_the_second(simulator):
+    now, first, second = time.monotonic(), Future(), Future()
+    answer = SimpleNamespace(
+        entities=['a', 'b'], states=['', ''], result=Result(result=Result.RESULT_OK))
+    simulator._calls = {first: now - module.LONGEST_CALL_S, second: now}
+    first.set_result(answer)
+    simulator._receive(first)
+    assert simulator._due == now + module.AFTER_EXCESS[0][0]
+    simulator._due, simulator._calls = 0.0, {first: now - module.LONGEST_CALL_S, second: now}
+    simulator._ask()
+    assert [*simulator._calls] == [second]
+
+
 @pytest.mark.parametrize(('names', 'states', 'line'), [
     (['a', 'b', 'c'], 1, 'no poses of models from {}: the simulator answers with 3 names and 1'),
     (['a', 'b'], 2, 'few poses of models from {}: it has 2 entities, which are more than were'),
@@ -174,14 +189,18 @@ def test_answers_that_take_long_are_asked_for_less_often(
 @pytest.fixture
 def answer(node, simulator):
     """Takes an answer about models; ``answer(*names)`` returns the values of each message."""
-    models = Models(node)
+    return answer_about(Models(node), simulator)
+
+
+def answer_about(models, simulator):
     simulator.follow(models.positions, settings_from_values(
         {'sdf_file': 'a.sdf', 'simulator_rate': 0.0, 'simulator_others': True}))
 
     def answer(*names):
-        state = EntityState()
-        state.pose.position.x, state.header.stamp.nanosec = 1.0, 5
-        simulator._answers.append(SimpleNamespace(entities=names, states=[state] * len(names)))
+        states = [EntityState() for _ in names]
+        for number, state in enumerate(states):
+            state.pose.position.x, state.header.stamp.nanosec = 1.0, 5 + number
+        simulator._answers.append(SimpleNamespace(entities=names, states=states))
         return {
             models.positions.names[dof]: (*values[:2], message.frame_id, message.stamp_ns)
             for message in simulator.messages(models.streams)
@@ -194,9 +213,18 @@ def answer(node, simulator):
 def test_a_nested_model_without_a_pose_keeps_its_place_in_the_model_around_it(answer, capfd):
     for _ in range(2):
         assert answer('a') == {'a': (1.0, 0.0, '', 5), 'a/b': (0.0, 3.0, 'a', 5)}
-    assert answer('a', 'a/b')['a/b'] == answer('a', 'a::b')['a/b'] == (1.0, 0.0, '', 5)
+    assert answer('a', 'a/b')['a/b'] == answer('a', 'a::b')['a/b'] == (1.0, 0.0, '', 6)
     assert answer() == {}
     assert capfd.readouterr().err.count('does not give the poses of "a::b"') == 1
+
+
+def test_a_model_nested_in_one_that_is_not_free_has_the_newest_stamp(node, simulator):
+    model = '<model name="{}"><pose>0 3 0 0 0 0</pose><link name="l"/>{}</model>'
+    answer = answer_about(Models(node, text=world_file(
+        model.format('a', '') + model.format('b', '')
+        + model.format('c', model.format('n', '')) + fixed_joint('j', 'a', 'c'))), simulator)
+    assert answer('b', 'a') == {
+        'b': (1.0, 0.0, '', 5), 'a': (1.0, 0.0, '', 6), 'c/n': (0.0, 3.0, 'c', 6)}
 
 
 def test_models_that_two_answers_lack_are_missing_unless_others_send_their_poses(
@@ -211,9 +239,10 @@ def test_models_that_two_answers_lack_are_missing_unless_others_send_their_poses
     assert simulator._to_tell == ['a::b']
 
 
-def test_other_entities_are_in_order(simulator, answer):
-    answer('z', 'a', 'y')
-    assert simulator.others == ('y', 'z')
+def test_other_entities_are_in_order_if_their_names_are_not_too_long(simulator, answer):
+    longest = 'x' * MOST_CHARACTERS
+    answer('z', 'a', longest, longest + 'x', 'y')
+    assert simulator.others == (longest, 'y', 'z')
 
 
 def test_an_entity_without_a_name_is_left_out_and_told_once(simulator, answer, capfd):
