@@ -33,7 +33,7 @@ from sdf_pose_bridge.cli.viewer.view_point import (
 from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.geometry.units import Unit
 from sdf_pose_bridge.printed_text import printable, shortened
-from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT
+from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
 
 MOST_NAMES = 500
@@ -168,13 +168,12 @@ class Drawing:
         """Remove the nodes."""
         self._node.remove()
 
-    def show(self, shown: ShownScene, frame: int, reference: int, unit: Unit) -> str:
+    def show(self, shown: ShownScene, frame: int, ends: Floats, unit: Unit) -> str:
         """
         Show other positions of joints, larger axes for a frame, and lines to its ancestors.
 
         :param frame: its index, or -1 for none.
-        :param reference: index of another one, to which there is a line; ``ROOT_IS_PARENT`` for
-            no line.
+        :param ends: shape (n, 3): points to mark, with a line between the two if there are two.
         :param unit: the unit of the length of this line.
         :return: in JSON, the labels: for each name of a frame or a missing mesh, and for the
             length of the line, its text, whether names do not cover it, and x, y and z of the
@@ -201,13 +200,13 @@ class Drawing:
             (printable(shortened(scene.shapes[element].mesh_uri.rpartition('/')[2])) + '?', True,
              *scene.poses[element, :3])
             for element in islice(missing, MOST_NAMES)]
-        measured = np.zeros((0, 2, 3))
-        if ROOT_IS_PARENT not in (reference, frame):
-            measured = origins[[[reference, frame]]]
-            length_m = math.dist(*measured[0])
-            labels.insert(0, (f'{unit.factor * length_m:.{unit.digits}f} {unit.name}', True,
-                              *measured[0].mean(axis=0)))
-        self._measured.points = measured
+        arms = 0.3 * visible.axes_length_m * np.eye(3)
+        measured = [np.zeros((0, 2, 3)), *(np.stack([end - arms, end + arms], 1) for end in ends)]
+        if len(ends) == 2:
+            measured.append(ends[np.newaxis])
+            labels.insert(0, (
+                f'{unit.rounded(math.dist(*ends))} {unit.name}', True, *ends.mean(axis=0)))
+        self._measured.points = np.concatenate(measured)
         named = visible.frames[:0 if NAMES in visible.hidden else None].tolist()
         labels += [
             (printable(shortened(shown.short_names[index])), index == frame, *origins[index])

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Sequence
 import html
+import math
 from pathlib import Path
 import shlex
 from xml.sax.saxutils import quoteattr
@@ -18,7 +19,8 @@ from sdf_pose_bridge.export.pose_setting import place_of_pose
 from sdf_pose_bridge.geometry.formats import converted_poses
 from sdf_pose_bridge.geometry.pose_texts import TEXT_FORMATS
 from sdf_pose_bridge.geometry.poses import relative_pose
-from sdf_pose_bridge.geometry.units import POSE_LABELS, Units
+from sdf_pose_bridge.geometry.rotations import Floats, matrix_from_quaternion
+from sdf_pose_bridge.geometry.units import POSE_LABELS, Unit, Units
 from sdf_pose_bridge.names import is_name_of_proxy, SEPARATOR
 from sdf_pose_bridge.printed_text import printable, quoted_names
 from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT
@@ -123,6 +125,21 @@ def html_of_selection(
     return (f'<b>{escaped(shown.ids[frame])}</b> in {escaped(shown.ids[reference])}: '
             f'{", ".join(_texts(units, drawn.pose_in(reference, frame)))}'
             f'<div>{escaped(_pose_in_file(shown, frame, units))}</div>{moved if names else ""}')
+
+
+def html_of_points(shown: ShownScene, points: Floats, frame: int, unit: Unit) -> str:
+    """
+    Write the distance of two points in the root frame, and their difference in it and in a frame.
+
+    :param points: shape (n, 3); if there are no two of them, this says what to click.
+    """
+    if len(points) < 2:
+        return f'<div>click on a shape for point {len(points) + 1} of 2; Escape ends it</div>'
+    texts = [f'{unit.rounded(math.dist(*points))} {unit.name} from point 1 to 2']
+    for other in dict.fromkeys((ROOT_IS_PARENT, frame)):
+        xyz = (points[1] - points[0]) @ matrix_from_quaternion(shown.poses[other, 3:])
+        texts.append(f'xyz {" ".join(map(unit.rounded, xyz))} in {escaped(shown.ids[other])}')
+    return f'<div>{", ".join(texts)}</div>'
 
 
 def _pose_in_file(shown: ShownScene, frame: int, units: Units) -> str:

@@ -123,7 +123,8 @@
     return found.slice(0, 8).map(([, name]) => name).join('\n')
       + (found.length > 8 ? `\nand ${found.length - 8} more` : '');
   };
-  const nameOfBodyAt = (event, box) => {
+  // The name of the body at the pointer, and the point of it there, in the root frame.
+  const bodyAt = (event, box) => {
     const meshes = [], {bodies} = namesInScene(), {raycaster} = scene.__r3f.root.getState();
     scene.traverse(node => node.isInstancedMesh2 && meshes.push(node));
     raycaster.setFromCamera({
@@ -135,9 +136,11 @@
     for (let node = frames; node; node = node.parent) above.add(node);
     let node = hit?.object;
     while (node && !above.has(node.parent)) node = node.parent;
-    if (!node) return '';
+    if (!node) return {};
     const nodes = node.parent.children;
-    return bodies[nodes.indexOf(node) - nodes.length + bodies.length]?.[hit.instanceId] ?? '';
+    return {name: bodies[nodes.indexOf(node) - nodes.length + bodies.length]?.[hit.instanceId],
+            // hit.point is in the frame of the copies.
+            point: frames.worldToLocal(raycaster.ray.at(hit.distance, hit.point)).toArray()};
   };
   const shown = document.createElement('div');
   shown.className = 'name-at-pointer';
@@ -158,7 +161,7 @@
     const box = canvas.getBoundingClientRect(), text = namesOfFramesAt(event, box);
     show(event, text);
     // A body is looked for when the pointer rests, as that takes long in a large scene.
-    if (!text) resting = setTimeout(() => show(event, nameOfBodyAt(event, box)), 100);
+    if (!text) resting = setTimeout(() => show(event, bodyAt(event, box).name ?? ''), 100);
   });
   // It is typed into a control that is not seen, with a number, as the same text is no change.
   const asked = () => document.querySelector('div:has(> .asked) + * input');
@@ -201,7 +204,18 @@
   addEventListener('focusin', ({target}) => {
     [focused, field] = [target, target.matches(FIELD) ? target : field];
   });
-  addEventListener('pointerdown', () => { focused = awaited = null; });
+  let pressed;
+  addEventListener('pointerdown', event => {
+    focused = awaited = null;
+    pressed = event;
+  });
+  addEventListener('click', event => {
+    const canvas = event.target, isDrag = pressed && Math.hypot(
+      event.clientX - pressed.clientX, event.clientY - pressed.clientY) > 3;
+    if (given('points') !== 'True' || canvas.tagName !== 'CANVAS' || isDrag) return;
+    const {point} = bodyAt(event, canvas.getBoundingClientRect());
+    if (point) tell(`point ${point.join(' ')}`);
+  });
   const updateFocus = row => {
     (row ?? document.querySelector('.rows [data-ask^=select]'))?.setAttribute('tabindex', 0);
     const {ask} = focused?.dataset ?? {};
@@ -268,6 +282,7 @@
       event.preventDefault();
       target.click();
     }
+    if (key === 'Escape' && given('points') === 'True') tell('end measuring');
     if (!target.closest('[role=slider], input, textarea, .rows, .strip')) return;
     event.stopPropagation();
     // Otherwise the same key presses the button that gets the keyboard.

@@ -10,6 +10,7 @@ from itertools import cycle
 from pathlib import Path
 import threading
 
+import numpy as np
 import viser
 
 from sdf_pose_bridge import Scene
@@ -18,6 +19,7 @@ from sdf_pose_bridge.cli.viewer.frame_texts import (
     html_of_data,
     html_of_frame,
     html_of_lines,
+    html_of_points,
     html_of_reasons,
     html_of_selection,
     html_of_tree,
@@ -90,10 +92,10 @@ class SelectedFrame:
         return self._ids.index(frame_id) if frame_id in self._ids else ROOT_IS_PARENT
 
     def answer(self, verb: str, frame: int) -> None:
-        """Select, fold or hide a frame ("select", "fold" or "hide"), or undo the latter."""
+        """Select ("select", "click"), "fold" or "hide" a frame, or undo the latter."""
         if frame >= len(self._ids):
             return
-        if verb == 'select':
+        if verb in {'select', 'click'}:
             self._frame_id = self._ids[frame]
         else:
             ids = self._folded if verb == 'fold' else self.hidden
@@ -136,7 +138,7 @@ class Page:
         with data.add_tab('data'):
             self._data = {
                 name: gui.add_html('')
-                for name in ('errors', 'strip', 'names', 'labels', 'opacity')}
+                for name in ('errors', 'strip', 'names', 'labels', 'opacity', 'points')}
             gui.add_html('<div class="asked"></div>')
             asked = gui.add_text('asked', '')
         self._events.when(asked.on_update, lambda: self._answer(asked.value.partition(' ')[2]))
@@ -145,7 +147,8 @@ class Page:
         self._edit = None if find_change is None else PoseEdit(
             client, shown, find_change, self._events, self.show)
         self._selected = SelectedFrame(gui, folder_of_frames, self._events)
-        self._angles, self._dark = self._add_view_controls(units)
+        self._angles, self._dark, self._measures = self._add_view_controls(units)
+        self._points: list[list[float]] = []
         self._switches = self._add_switches()
         self._joints = JointSliders(gui, shown.joints, {}, units, self._events)
         self._node_names = cycle(('/drawing', '/other drawing'))
@@ -211,7 +214,14 @@ class Page:
             strip, drawn = edit.html, edit.shown_ahead
         if frame >= 0:
             strip = html_of_selection(shown, drawn, frame, reference, units) + strip
-        self._tell_script('labels', self._drawing.show(drawn, frame, reference, units.length))
+        ends = drawn.poses[[] if ROOT_IS_PARENT in (reference, frame) else [reference, frame], :3]
+        if self._measures.value:
+            ends = np.array(self._points).reshape(-1, 3)
+            strip = html_of_points(drawn, ends, frame, units.length) + strip
+        else:
+            self._points = []
+        self._tell_script('points', str(self._measures.value))
+        self._tell_script('labels', self._drawing.show(drawn, frame, ends, units.length))
         selected.describe(html_of_frame(drawn, frame, reference, units) if frame >= 0 else '')
         self._tell_script('strip', refusals + strip)
 
@@ -226,7 +236,7 @@ class Page:
         self._tell_script('names', visible.names)
         return Drawing(
             self._client.scene, next(self._node_names), visible,
-            lambda frame: self._events.put(partial(self._selected.answer, 'select', frame)))
+            lambda frame: self._events.put(partial(self._answer, f'click {frame}')))
 
     # Controls
 
@@ -238,12 +248,16 @@ class Page:
             panel.minimize()
 
     def _answer(self, ask: str) -> None:
-        """Process a click outside of the controls."""
+        """Process a click outside of the controls, or Escape."""
         verb, _, frame = ask.partition(' ')
-        if verb in {'select', 'fold', 'hide'}:
+        if verb in {'select', 'fold', 'hide'} or (verb == 'click' and not self._measures.value):
             self._selected.answer(verb, int(frame))
+        elif verb == 'point':
+            self._points = [*self._points[:len(self._points) % 2], [*map(float, frame.split())]]
         elif verb == 'dark':
             self._dark.value = True
+        elif ask == 'end measuring':
+            self._measures.value = False
         elif self._edit is not None and ask in self._edit.actions:
             self._edit.actions[ask]()
 
@@ -262,8 +276,8 @@ class Page:
 
     def _add_view_controls(
         self, units: Units,
-    ) -> tuple[viser.GuiDropdownHandle[str], viser.GuiCheckboxHandle]:
-        """Add the folder "View"; return the unit of angles in it, and whether it is dark."""
+    ) -> tuple[viser.GuiDropdownHandle[str], viser.GuiCheckboxHandle, viser.GuiCheckboxHandle]:
+        """Add the folder "View"; return the unit of angles, and the last two switches in it."""
         gui = self._client.gui
         with gui.add_folder('View'):
             views = gui.add_button_group('view', ('home', *DIRECTIONS, 'zoom to'))
@@ -272,13 +286,16 @@ class Page:
                 'angles', tuple(_ANGLES), initial_value=units.angle.name)
             self._add_switch(NAMES)
             dark = gui.add_checkbox('dark background', initial_value=False)
+            measures = gui.add_checkbox(
+                'measure points', initial_value=False, hint='of shapes, where they are clicked')
+        self._events.when(measures.on_update)
         self._events.when(views.on_click, lambda: self._look(views.value))
         self._events.when(
             opacity.on_update, lambda: self._tell_script('opacity', str(opacity.value)))
         self._events.when(angles.on_update)
         self._events.when(dark.on_update, lambda: gui.configure_theme(
             show_logo=False, show_share_button=False, dark_mode=dark.value))
-        return angles, dark
+        return angles, dark, measures
 
     def _look(self, name: str) -> None:
         """Turn the camera to a view; "zoom to" shows the selected frame, link or model."""
@@ -336,7 +353,7 @@ class Pages:
         """Return the scene with all names, without controls, as a page that needs no network."""
         # Nothing can be selected there.
         labels = Drawing(self._server.scene, '/drawing', self._visible, print).show(
-            self._shown, ROOT_IS_PARENT, ROOT_IS_PARENT, self._units.length)
+            self._shown, ROOT_IS_PARENT, np.zeros((0, 3)), self._units.length)
         return page_with_script(
             self._server.get_scene_serializer().as_html(), self._title,
             html_of_data('names', self._visible.names) + html_of_data('labels', labels))

@@ -58,6 +58,7 @@ def test_each_control_has_a_name(page):
     assert {
         ('treeitem', 'slide, link'), ('textbox', 'x [m]'), ('textbox', 'search'),
         ('textbox', 'rail'), ('slider', 'rail'), ('slider', 'opacity'),
+        ('checkbox', 'measure points'),
         ('button', 'hide slide'), ('button', 'copy Franka matrix'), ('button', 'Show'),
     } <= {*found}
 

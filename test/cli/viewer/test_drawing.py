@@ -5,6 +5,7 @@
 import json
 import math
 
+import numpy as np
 import pytest
 from sdf_texts import model_file, world_file
 
@@ -16,10 +17,10 @@ from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.units import METRES
 from sdf_pose_bridge.scene.loading import load_text
-from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfOptions
 
 BOX = '<geometry><box/></geometry>'
+NO_ENDS = np.zeros((0, 3))
 
 
 @pytest.fixture
@@ -92,7 +93,7 @@ def test_selected_frame_and_its_name_stand_at_its_new_pose(drawing_of):
     drawing, shown = drawing_of('<link name="a"/>')
     frame = shown.tree.frame_ids.index('a')
     moved = shown.with_pose(frame, Pose(3.0, 0.0, 1.0))
-    assert json.loads(drawing.show(moved, frame, ROOT_IS_PARENT, METRES))['labels'] == [
+    assert json.loads(drawing.show(moved, frame, NO_ENDS, METRES))['labels'] == [
         ['m', False, 0.0, 0.0, 0.0], ['a', True, 3.0, 0.0, 1.0]]
     assert drawing._marker.position.tolist() == [3.0, 0.0, 1.0]
     assert shown.pose_of(frame) == Pose()
@@ -106,7 +107,7 @@ def test_lines_lead_to_the_parents_of_frames(drawing_of, hidden, lines):
         '<frame name="b" attached_to="a"><pose>1 0 0 0 0 0</pose></frame>'
         '<frame name="c" attached_to="b"><pose>1 0 0 0 0 0</pose></frame>'
         '<frame name="d" attached_to="a"><pose>3 0 0 0 0 0</pose></frame>', hidden)
-    drawing.show(shown, shown.ids.index('c'), ROOT_IS_PARENT, METRES)
+    drawing.show(shown, shown.ids.index('c'), NO_ENDS, METRES)
     assert [tuple(line[:, 0].tolist()) for line in drawing._lines.points] == lines
 
 
@@ -115,7 +116,7 @@ def test_name_of_a_missing_mesh_precedes_those_of_frames(drawing_of):
     drawing, shown = drawing_of(
         f'<link name="{"a" * 40}">'
         f'<visual name="v"><pose>0.2 1 0 0 0 0</pose>{mesh}</visual></link>')
-    assert json.loads(drawing.show(shown, -1, ROOT_IS_PARENT, METRES))['labels'] == [
+    assert json.loads(drawing.show(shown, -1, NO_ENDS, METRES))['labels'] == [
         ['a.stl?', True, 0.2, 1.0, 0.0], ['m', False, *[0.0] * 3], ['a' * 40, False, *[0.0] * 3]]
 
 
@@ -124,7 +125,7 @@ def test_names_that_are_too_many_are_counted(drawing_of):
     drawing, shown = drawing_of(f'<link name="a"/>{frames}')
     # The model and its link are frames, too.
     for selected, count in (-1, 5), (shown.ids.index('a'), 5), (shown.ids.index('f502'), 4):
-        told = json.loads(drawing.show(shown, selected, ROOT_IS_PARENT, METRES))
+        told = json.loads(drawing.show(shown, selected, NO_ENDS, METRES))
         assert len(told['labels']) + told['unlisted'] == MOST_NAMES + 5
         assert told['unlisted'] == count
 

@@ -7,19 +7,21 @@ from pathlib import Path
 import re
 import shlex
 
+import numpy as np
 import pytest
 
 from sdf_pose_bridge.cli.viewer import frame_texts
 from sdf_pose_bridge.cli.viewer.frame_texts import (
     html_of_difference,
     html_of_frame,
+    html_of_points,
     html_of_reasons,
     html_of_selection,
     html_of_tree,
 )
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.units import Units
+from sdf_pose_bridge.geometry.units import MILLIMETRES, Units
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfOptions
@@ -161,3 +163,18 @@ def test_more_frames_than_rows(scene, monkeypatch):
     monkeypatch.setattr(frame_texts, 'MOST_ROWS', 4)
     text = html_of_tree(ShownScene(scene, TfOptions()), '', '', (), ())
     assert '2 more, to be found by the search' in text
+
+
+def test_difference_of_points_is_in_the_root_frame_and_in_the_axes_of_the_selected_one():
+    text = TEXT.replace('1 2 3 0 0 1.5', '1 2 3 0 0 1.5707963267948966').replace(
+        html.escape(HOSTILE), 'a')
+    shown = ShownScene(load_text(text.encode(), 'cell.sdf'), TfOptions())
+    points = np.array([(1.0, 1.0, 1.0), (1.3, 1.4, 1.0)])
+    told = [html_of_points(shown, points[:count], shown.ids.index('m/l'), MILLIMETRES)
+            for count in range(3)]
+    assert told == [
+        '<div>click on a shape for point 1 of 2; Escape ends it</div>',
+        '<div>click on a shape for point 2 of 2; Escape ends it</div>',
+        ('<div>500.0 mm from point 1 to 2, xyz 300.0 400.0 0.0 in world, '
+         'xyz 400.0 -300.0 0.0 in m/l</div>')]
+    assert html_of_points(shown, points, ROOT_IS_PARENT, MILLIMETRES).count('xyz') == 1

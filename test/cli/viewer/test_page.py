@@ -136,8 +136,35 @@ def test_line_joins_the_frames_that_are_measured(page_of):
     assert page._drawing._measured.points.shape == (0, 2, 3)
     page._selected._measure_from_here()
     select(page, 'l/s')
-    assert page._drawing._measured.points.tolist() == [[[0, 0, 0], [1, 2, 3]]]
+    assert page._drawing._measured.points.tolist()[-1] == [[0, 0, 0], [1, 2, 3]]
     assert labels(page)[0] == ['3.7417 m', True, 0.5, 1.0, 1.5]
+
+
+def test_each_click_on_a_shape_adds_a_point_to_measure_and_the_third_begins_anew(page_of):
+    page = page_of('')
+    page._measures.value = True
+    for point, line_count in (('0 0 1', 3), ('0 2 1', 7), ('3 0 0', 3), ('3 0 4', 7)):
+        page._answer(f'point {point}')
+        page._refresh()
+        # Each point is marked by three lines.
+        assert len(page._drawing._measured.points) == line_count
+    assert page._drawing._measured.points.tolist()[-1] == [[3, 0, 0], [3, 0, 4]]
+    assert labels(page)[0] == ['4.0000 m', True, 3.0, 0.0, 2.0]
+    page._answer('end measuring')
+    page._refresh()
+    page._measures.value = True
+    page._refresh()
+    assert len(page._drawing._measured.points) == 0
+
+
+def test_click_on_a_frame_selects_it_only_where_nothing_is_measured(page_of):
+    page = page_of('')
+    page._measures.value = True
+    page._answer('click 0')
+    assert page._selected.frame == -1
+    page._answer('end measuring')
+    page._answer('click 0')
+    assert page._selected.frame == 0
 
 
 def test_bounds_of_a_frame_have_its_axes_and_bodies(page_of):
