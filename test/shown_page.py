@@ -34,6 +34,20 @@ BOX = '<visual name="v"><geometry><box><size>0.1 0.1 0.1</size></box></geometry>
 AXES_M = 0.1 * np.linalg.norm((1.1, 0.2, 0.2))
 ROWS = "[...document.querySelectorAll('.rows [data-ask^=select]')]"
 LABELS = "[...document.querySelectorAll('.labels div')]"
+SCENES = """
+  window.scenes = [];
+  window.__THREE_DEVTOOLS__ = new EventTarget();
+  __THREE_DEVTOOLS__.addEventListener('observe', ({detail}) => {
+    if (detail.isScene) scenes.push(detail);
+  });
+  window.opacities = () => {
+    const found = [];
+    scenes.forEach(scene => scene.traverse(node => {
+      if (node.isInstancedMesh2) found.push(node.material.opacity);
+    }));
+    return found.join(' ');
+  };"""
+"""Run before a page is opened; then ``opacities()`` returns those of its bodies."""
 
 
 def run_view(folder, *arguments, **options):

@@ -5,10 +5,12 @@
 from types import SimpleNamespace
 
 from browser import browser
+import needs
 import pytest
 from shown_page import (
     HOSTILE,
     ROWS,
+    SCENES,
     select,
     TEXT,
     view_of,
@@ -21,8 +23,11 @@ def shown(tmp_path_factory):
     folder = tmp_path_factory.mktemp('page')
     file = folder / 'cell.sdf'
     file.write_text(TEXT)
-    with browser(folder / 'browser') as page, view_of(folder, '--edit') as address:
+    needs.browser()
+    # The server ends soon where the browser has ended before.
+    with view_of(folder, '--edit') as address, browser(folder / 'browser') as page:
         page.size(1366, 768)
+        page.call('Page.addScriptToEvaluateOnNewDocument', source=SCENES)
         page.open(address)
         page.wait_for(f'{ROWS}.length > 0')
         yield SimpleNamespace(
@@ -56,4 +61,5 @@ def sized_page(page, request):
 def tab(shown):
     """Another tab of that browser."""
     with shown.page.other() as other:
+        other.size(1366, 768)
         yield other

@@ -21,7 +21,6 @@ from shown_page import (
     strip_button,
     TEXT,
     type_over,
-    view_of,
     wait_for_name_at,
     wait_until_movable,
 )
@@ -118,20 +117,18 @@ URDF = """<robot name="r">
 </joint></robot>"""
 
 
-def test_the_origin_of_a_urdf_is_written(tab, tmp_path):
-    (tmp_path / 'cell.sdf').write_text(URDF)
-    with view_of(tmp_path, '--edit') as address:
-        tab.open(address)
-        select(tab, 'tool')
-        enter(tab, control('x [m]'), '0.25')
-        tab.wait_for(strip_button('write to file'))
-        press(tab, 'write to file')
-        tab.wait_for("""document.querySelector('.strip').innerText.includes(
-            'written to cell.sdf:4')""")
-        assert (tmp_path / 'cell.sdf').read_text() == URDF.replace('xyz="1 ', 'xyz="0.25 ')
-        press(tab, 'undo the last write')
-        tab.wait_for(f"!{strip_button('undo the last write')}")
-        assert (tmp_path / 'cell.sdf').read_text() == URDF
+def test_the_origin_of_a_urdf_is_written(page, shown):
+    shown.file.write_text(URDF)
+    select(page, 'tool')
+    enter(page, control('x [m]'), '0.25')
+    page.wait_for(strip_button('write to file'))
+    press(page, 'write to file')
+    page.wait_for("""document.querySelector('.strip').innerText.includes(
+        'written to cell.sdf:4')""")
+    assert shown.file.read_text() == URDF.replace('xyz="1 ', 'xyz="0.25 ')
+    press(page, 'undo the last write')
+    page.wait_for(f"!{strip_button('undo the last write')}")
+    assert shown.file.read_text() == URDF
 
 
 def test_what_moves_is_drawn_and_named_before_it_is_written(sized_page, shown):

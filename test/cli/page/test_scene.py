@@ -46,7 +46,6 @@ def test_written_page_has_names_that_do_not_overlap_and_asks_for_nothing(tab, tm
         f'<sdf version="1.11"><world name="w">{frames}</world></sdf>')
     process = run_view(tmp_path, 'cell.sdf', '-o', 'page.html')
     assert process.communicate(timeout=DEADLINE_S) == ('', '')
-    tab.size(1366, 768)
     tab.open((tmp_path / 'page.html').as_uri())
     tab.wait_for(f'{LABELS}.length')
     texts = tab.run(f'{LABELS}.map(label => label.innerText)')
@@ -70,33 +69,20 @@ def test_name_of_a_body_is_that_of_the_last_drawing(page, shown):
     wait_for_name_at(page, *point_on_screen(page, (0.1, -0.1, 0.09)), 'arm/base, visual other')
 
 
-def test_opacity_of_bodies_with_and_without_a_texture(tab, tmp_path):
+def test_opacity_of_bodies_with_and_without_a_texture(page, shown):
     image = pytest.importorskip('PIL.Image', reason='needs Pillow')
-    image.new('RGB', (4, 4)).save(tmp_path / 'texture.png')
-    (tmp_path / 'colors.mtl').write_text('newmtl red\nmap_Kd texture.png\n')
-    (tmp_path / 'mesh.obj').write_text(mesh_texts.TEXTURED_OBJ)
-    (tmp_path / 'cell.sdf').write_text(TEXT.replace(
+    folder = shown.file.parent
+    image.new('RGB', (4, 4)).save(folder / 'texture.png')
+    (folder / 'colors.mtl').write_text('newmtl red\nmap_Kd texture.png\n')
+    (folder / 'mesh.obj').write_text(mesh_texts.TEXTURED_OBJ)
+    shown.file.write_text(TEXT.replace(
         '<box><size>0.2 0.2 0.2</size></box>', '<mesh><uri>mesh.obj</uri></mesh>').replace(
         '<material><diffuse>1 0 0 1</diffuse></material>', '').replace(
         '<link name="slide"/>', f'<link name="slide">{BOX}</link>'))
-    with view_of(tmp_path) as address:
-        tab.call('Page.addScriptToEvaluateOnNewDocument', source="""
-          window.__THREE_DEVTOOLS__ = new EventTarget();
-          __THREE_DEVTOOLS__.addEventListener('observe', ({detail}) => {
-            if (detail.isScene) (window.scenes ??= []).push(detail);
-          });
-          window.opacities = () => {
-            const found = [];
-            scenes.forEach(scene => scene.traverse(node => {
-              if (node.isInstancedMesh2) found.push(node.material.opacity);
-            }));
-            return found.join(' ');
-          };""")
-        tab.open(address)
-        tab.wait_for("window.scenes && opacities() === '1 1'")
-        tab.wait_for(control('opacity'))
-        enter(tab, control('opacity'), '0.5')
-        tab.wait_for("opacities() === '0.5 0.5'")
+    page.wait_for("opacities() === '1 1'")
+    for opacity in ('0.5', '1'):
+        enter(page, control('opacity'), opacity)
+        page.wait_for(f"opacities() === '{opacity} {opacity}'")
 
 
 def test_axes_of_the_root_frame_are_in_a_corner(page):
@@ -110,31 +96,26 @@ def test_axes_of_the_root_frame_are_in_a_corner(page):
     assert z_end < -15
 
 
-def test_file_that_is_broken_at_first_is_shown_when_it_is_mended(tab, tmp_path):
+def test_dark_page_waits_for_its_file_and_says_when_its_program_has_ended(tab, tmp_path):
     (tmp_path / 'cell.sdf').write_text(TEXT.replace('<parent>base', '<parent>bass'))
     tab.size(800, 600)
+    tab.call('Emulation.setEmulatedMedia', features=[
+        {'name': 'prefers-color-scheme', 'value': 'dark'}])
+    strip = "document.querySelector('.strip')"
     with view_of(tmp_path) as address:
         tab.open(address)
-        errors = "document.querySelector('.strip .errors')?.innerText"
-        tab.wait_for(f"{errors}.match('bass.* [(]also line 9[)]$')")
-        tab.wait_for("document.querySelector('.strip').getBoundingClientRect().right"
+        tab.wait_for(f"{strip}?.querySelector('.errors')?.innerText.match("
+                     "'bass.* [(]also line 9[)]$')")
+        tab.wait_for(f"{strip}.getBoundingClientRect().right"
                      " <= document.querySelector('canvas').clientWidth")
         assert 'no frames' not in tab.run('document.body.innerText')
         (tmp_path / 'cell.sdf').write_text(TEXT)
         tab.wait_for(f"{ROWS}.length === 5 && !document.querySelector('.errors')")
         wait_for_name_at(tab, *point_on_screen(tab, (0.1, -0.1, 0.09)), 'arm/base, visual v')
-
-
-def test_dark_page_of_a_dark_system_and_a_tab_whose_program_has_ended(tab, tmp_path):
-    (tmp_path / 'cell.sdf').write_text(TEXT)
-    tab.size(700, 600)
-    tab.call('Emulation.setEmulatedMedia', features=[
-        {'name': 'prefers-color-scheme', 'value': 'dark'}])
-    with view_of(tmp_path) as address:
-        tab.open(address)
-        tab.wait_for("document.documentElement?.dataset.mantineColorScheme === 'dark'")
-    strip = "document.querySelector('.strip')"
-    tab.wait_for(f"{strip}?.innerText.includes('view has ended')")
+        tab.wait_for("document.documentElement.dataset.mantineColorScheme === 'dark'")
+        tab.size(700, 600)
+        tab.wait_for("document.querySelector('canvas').clientWidth < 700")
+    tab.wait_for(f"{strip}.innerText.includes('view has ended')")
     tab.wait_for(is_in_window(strip))
     color = tab.run(f'getComputedStyle({strip}).backgroundColor')
     assert max(map(int, re.findall('[0-9]+', color)[:3])) < 100

@@ -67,7 +67,6 @@ def test_selected_frame_and_errors_are_in_view(sized_page, shown):
 
 
 def test_each_tab_has_its_own_selection(page, shown, tab):
-    tab.size(1366, 768)
     tab.open(shown.address)
     for each, name in ((page, 'slide'), (tab, 'base'), (page, 'follower')):
         select(each, name)
