@@ -4,15 +4,16 @@
 
 from __future__ import annotations
 
+import re
 from typing import NamedTuple
 
 from sdf_pose_bridge.geometry.formats import PoseFormatError
 
 _BOOLEANS = {'true': True, '1': True, 'false': False, '0': False}
 
-FORMAT_ATTRIBUTES = 'rotation_format', 'degrees'
-ATTRIBUTES_OF_NUMBERS = '@{} @{}:bool'.format(*FORMAT_ATTRIBUTES)
-"""These in the notation of the module ``grammar``."""
+ATTRIBUTES_OF_NUMBERS = '@rotation_format @degrees:bool'
+"""In the notation of the module ``grammar``."""
+FORMAT_ATTRIBUTES = re.findall(r'@(\w+)', ATTRIBUTES_OF_NUMBERS)
 
 
 class PoseFormat(NamedTuple):

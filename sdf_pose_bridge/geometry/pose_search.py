@@ -335,13 +335,13 @@ class _Search:
                       for name, each in self._groups.get(named.path, {}).items()}
         if not attributes.keys().isdisjoint(SCALARS):
             return
-        is_quaternion, is_degrees = pose_format_from_attributes(
-            *(attributes.get(name, '') for name in FORMAT_ATTRIBUTES))
+        given = pose_format_from_attributes(
+            **{name: attributes.get(name, '') for name in FORMAT_ATTRIBUTES})
         if (degrees := attributes.get('degrees')) and boolean_from_text(degrees) is None:
             msg = f'degrees="{shortened(degrees)}" is not a boolean (true, false, 1 or 0)'
             raise PoseFormatError(msg)
-        pose_format = POSE_FORMATS['sdf_quat_xyzw' if is_quaternion else (
-            'sdf_rpy_degrees' if is_degrees else 'sdf_rpy')]
+        pose_format = POSE_FORMATS['sdf_quat_xyzw' if given.is_quaternion else (
+            'sdf_rpy_degrees' if given.is_degrees else 'sdf_rpy')]
         words = named.words or [*'0000001'[:pose_format.row_length]]
         if len(words) != pose_format.row_length or not all(map(is_number, words)):
             msg = (f'<pose> has {pose_format.row_length} numbers ({pose_format.meaning}), and this'

@@ -58,7 +58,8 @@ def pose_format_of(xml: XmlElement) -> PoseFormat:
 
     :raises PoseTextError: if ``rotation_format`` or ``degrees`` is not valid.
     """
-    return pose_format_from_attributes(*(attribute_of(xml, each) for each in FORMAT_ATTRIBUTES))
+    return pose_format_from_attributes(
+        **{name: attribute_of(xml, name) for name in FORMAT_ATTRIBUTES})
 
 
 def pose_from_text(text: str, pose_format: PoseFormat) -> tuple[Pose, list[str]]:

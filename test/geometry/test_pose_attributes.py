@@ -2,15 +2,28 @@
 # SPDX-License-Identifier: Apache-2.0
 """The attributes of a pose are those of its elements in the specification."""
 
-import pytest
+import math
 
+import pytest
+from sdf_texts import model_file
+
+from sdf_pose_bridge import load_text, Pose
+from sdf_pose_bridge.geometry.formats import converted_poses
 from sdf_pose_bridge.geometry.pose_attributes import (
     FORMAT_ATTRIBUTES,
     pose_format_from_attributes,
     PoseFormat,
     PoseTextError,
 )
+from sdf_pose_bridge.geometry.pose_texts import typed_poses_from_text
 from sdf_pose_bridge.sdformat.grammar import definition_of
+from sdf_pose_bridge.sdformat.pose_writing import PoseText
+
+VALUES = {
+    'rotation_format': (
+        'quat_xyzw', '1 2 3 0 0 0.6 0.8', f'1 2 3 0 0 {2 * math.atan2(0.6, 0.8)}'),
+    'degrees': ('true', '1 2 3 0 0 90', f'1 2 3 0 0 {math.pi / 2}')}
+"""A value of each attribute, numbers with it, and without it the same pose."""
 
 
 @pytest.mark.parametrize('name', ['pose', 'include/pose', 'inertial/pose', 'audio_source/pose'])
@@ -30,3 +43,16 @@ def test_attributes_are_a_format(rotation_format, degrees, expected):
 def test_wrong_attributes_are_refused(rotation_format, degrees):
     with pytest.raises(PoseTextError):
         pose_format_from_attributes(rotation_format, degrees)
+
+
+@pytest.mark.parametrize('name', FORMAT_ATTRIBUTES)
+def test_each_attribute_is_read_written_and_pasted(name):
+    value, numbers, plain = VALUES[name]
+    pose = Pose(*converted_poses([*map(float, plain.split())], 'sdf_rpy', 'sdf_quat_xyzw'))
+    element = f'<pose {name}="{value}">{{}}</pose>'
+    text = model_file(f'<link name="l">{element}</link>')
+    assert load_text(text.format(numbers)).pose('l') == pytest.approx(pose)
+    blank = PoseText(text.format('').encode(), 'f')
+    assert blank.with_pose(3, pose, 1e-9).new_text.decode() == text.format(numbers)
+    pasted, = typed_poses_from_text(element.format(numbers))
+    assert converted_poses(pasted.numbers, pasted.format, 'sdf_quat_xyzw') == pytest.approx(pose)
