@@ -120,6 +120,8 @@ name space of a plugin, ``{C}`` and ``{S}`` for the link of a sensor (``link/l``
 others for parameters. ``?name`` must be true, and ``?!name`` must not; ``*name`` has the frame of
 odometry. Of several poses of one model, those that are first here are followed.
 """
+SENSOR_PATHS = tuple(dict.fromkeys(('topic', *re.findall(r'[{?!](\w+(?:/\w+)+)', _TOPICS))))
+"""Elements of a sensor on which its topics depend."""
 GROUPS = ('joints', 'poses', 'odometry', 'sensors', 'commands')
 _ABBREVIATIONS = {'~': '/model/{M}', '@': '/world/{W}/model/{P}/{C}/sensor/{S}'}
 _DELETED, _LAST_LEVEL = re.compile('@|~|//|:='), re.compile(r'(?<![^/])[^/]+/\.\./')

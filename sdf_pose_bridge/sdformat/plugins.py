@@ -7,6 +7,7 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
+from sdf_pose_bridge.sdformat.gazebo_topics import SENSOR_PATHS
 from sdf_pose_bridge.sdformat.specification import CAMERA_TYPES
 from sdf_pose_bridge.sdformat.xml_tree import (
     attribute_of,
@@ -19,11 +20,6 @@ from sdf_pose_bridge.sdformat.xml_tree import (
 
 _CLASS = re.compile(r'(?:gz::sim|ignition::gazebo)::systems::(\w+)')
 _LIBRARY = re.compile(r'(?:lib)?(?:gz-sim|ignition-gazebo)\d*-(.+)-system(?:\.so)?')
-
-_TOPIC_PATHS = (
-    'topic', 'camera/camera_info_topic', 'camera/triggered', 'camera/trigger_topic',
-    'camera/box_type', 'contact/topic')
-"""Elements of a sensor on which its topics depend."""
 
 
 class Plugin(NamedTuple):
@@ -77,7 +73,7 @@ def sensor_details_from_element(xml: XmlElement, *, reads_topics: bool) -> Senso
     # As in the constructor of gz::sensors::Sensor.
     older_frame_id = value_at(xml, 'gz_frame_id')
     sensor_type = attribute_of(xml, 'type')
-    values = ((path, value_at(xml, path)) for path in _TOPIC_PATHS if reads_topics)
+    values = ((path, value_at(xml, path)) for path in SENSOR_PATHS if reads_topics)
     return SensorDetails(
         sensor_type, value_at(xml, 'frame_id') or older_frame_id, older_frame_id,
         first_child(xml, 'camera') is not None or sensor_type in CAMERA_TYPES,

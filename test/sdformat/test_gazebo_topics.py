@@ -9,7 +9,14 @@ from gazebo_facts import ROS_TYPES as ROS_FACTS
 from gazebo_facts import TOPICS
 import pytest
 
-from sdf_pose_bridge.sdformat.gazebo_topics import _key, ROS_TYPES, TOPICS_BY_OWNER, topics_of
+from sdf_pose_bridge.sdformat.gazebo_topics import (
+    _key,
+    ROS_TYPES,
+    SENSOR_PATHS,
+    TOPICS_BY_OWNER,
+    topics_of,
+)
+from sdf_pose_bridge.sdformat.specification import CAMERA_TYPES, CHOICES
 
 VALUES = {'W': 'w', 'P': 'a/model/b', 'M': 'b', 'N': 'b', 'C': 'link/l', 'S': 's'}
 SENSOR = '/world/w/model/a/model/b/link/l/sensor/s'
@@ -74,6 +81,29 @@ def test_each_row_with_each_of_its_names_is_held_by_a_fact():
     assert held == {
         (owner, topic.gz_type, topic.ros_name, name) for owner, topics in TOPICS_BY_OWNER.items()
         for topic in topics for name in topic.names}
+
+
+SENSORS = {owner: topics for owner, topics in TOPICS_BY_OWNER.items() if owner.islower()}
+WITHOUT_TOPICS = {'custom', 'rfid', 'rfidtag', 'sonar', 'wireless_receiver',
+                  'wireless_transmitter', 'multicamera'}
+"""The types of sensors that have no row."""
+
+
+@pytest.mark.parametrize(('types', 'owners'), [
+    (CHOICES['sensor_type'].texts, SENSORS.keys() - {'server'}),
+    (CAMERA_TYPES, {owner for owner, topics in SENSORS.items()
+                    if 'CameraInfo' in (each.gz_type for each in topics)}),
+], ids=['all', 'cameras'])
+def test_types_of_sensors_are_those_of_the_specification(types, owners):
+    assert {each.removesuffix('_camera') for each in types} - WITHOUT_TOPICS == owners
+
+
+@pytest.mark.parametrize('owner', SENSORS)
+def test_what_topics_of_a_sensor_depend_on_is_read(owner):
+    names = [name for topic in SENSORS[owner] for name in topic.names]
+    conditions = {each.lstrip('!') for topic in SENSORS[owner] for each in topic.conditions}
+    fields = set().union(conditions, *(missing_fields(name, VALUES) for name in names))
+    assert fields <= {*SENSOR_PATHS}
 
 
 def missing_fields(name, values):
