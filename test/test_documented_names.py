@@ -35,6 +35,16 @@ def subcommands():
     return action.choices
 
 
+def text_about(command):
+    """Return the section, the rows and the paragraphs of the page that are about a command."""
+    options, *sections = re.split('^## ', text_of('docs/command_line.md'), flags=re.MULTILINE)
+    named = {text.partition('\n')[0]: text for text in sections}
+    rows = [row for row in options.splitlines() if row.startswith('|')
+            and f'`{command}`' in (re.findall(r'; for (`.*`) \|', row) or [f'`{command}`'])[0]]
+    formats = named['Output for other programs'].split('\n\n')
+    return '\n'.join([named[command], *rows, *(each for each in formats if f'`{command}' in each)])
+
+
 def names_of_policy(tag):
     root = ET.parse(ROOT / 'config/sros2_policy.xml').getroot()
     return {element.text for element in root.iter(tag)}
@@ -73,10 +83,9 @@ def test_command(command):
 
 @pytest.mark.parametrize(('command', 'option'), [
     (command, option) for command, parser in COMMANDS.items()
-    for option in parser._option_string_actions if option.startswith('--') and option != '--help'])
+    for option in parser._option_string_actions if option not in ('-h', '--help')])
 def test_option(command, option):
-    text = text_of('docs/command_line.md')
-    assert option in text, f'{option} of {command}'
+    assert re.search(rf'(?<![\w-]){option}(?![\w-])', text_about(command))
 
 
 @pytest.mark.parametrize(('page', 'name'), [
