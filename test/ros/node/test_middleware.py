@@ -3,6 +3,7 @@
 """The profile of Fast DDS is used where the user has chosen nothing else."""
 
 from pathlib import Path
+import re
 import xml.etree.ElementTree as ET
 
 from folders import ROOT
@@ -16,6 +17,13 @@ FAST_DDS = [profile for profile in PROFILES if '' in profile.middlewares]
 BY_DISTRO = {distro: profile for profile in FAST_DDS for distro in profile.distros}
 BOTH = pytest.mark.parametrize('distro', BY_DISTRO)
 OLD, NEW = (profile.variable for profile in FAST_DDS)
+CASES = [
+    pytest.param(profile, {'ROS_DISTRO': distro, **chosen}, id=f'{profile.file}-{distro}-{name}')
+    for profile in PROFILES for distro in profile.distros for name in profile.middlewares
+    for chosen in ({'RMW_IMPLEMENTATION': name}, {})[:1 if name else 2]]
+"""Each profile with each environment in which it is used."""
+IN_THE_PIPELINE = re.findall(
+    r'rmw: \[?(\w+)', (ROOT / '.github/workflows/pipeline.yml').read_text())
 
 
 @BOTH
@@ -33,19 +41,27 @@ def test_a_choice_of_the_user_is_left_alone(distro, chosen, reason):
     assert environment == before
 
 
-@pytest.mark.parametrize('profile', PROFILES)
+@pytest.mark.parametrize('name', sorted(
+    {*IN_THE_PIPELINE, *(name for each in PROFILES for name in each.middlewares)} - {''}))
+def test_the_page_about_middlewares_names_it(name):
+    page = (ROOT / 'docs/middlewares.md').read_text()
+    assert re.match('rmw_[a-z]+', name)[0] in re.findall('rmw_[a-z]+', page)
+
+
+@pytest.mark.parametrize('profile', PROFILES, ids=lambda each: each.file)
 def test_the_file_of_a_profile_is_in_the_package(profile):
     assert (ROOT / profile.file).is_file()
 
 
-@BOTH
-def test_profiles_in_the_working_directory_are_left_alone(tmp_path, monkeypatch, distro):
-    local_file = BY_DISTRO[distro].local_file
-    (tmp_path / local_file).touch()
+@pytest.mark.parametrize(
+    ('profile', 'environment'), [each for each in CASES if each.values[0].local_file])
+def test_profiles_in_the_working_directory_are_left_alone(
+        tmp_path, monkeypatch, profile, environment):
+    (tmp_path / profile.local_file).touch()
     monkeypatch.chdir(tmp_path)
-    environment = {'ROS_DISTRO': distro}
-    assert f'{local_file} is in the working directory' in use_profile(environment)
-    assert environment == {'ROS_DISTRO': distro}
+    given = dict(environment)
+    assert f'{profile.local_file} is in the working directory' in use_profile(given)
+    assert given == environment
 
 
 @pytest.mark.parametrize('prefixes', ['', '/nonexistent'])
@@ -56,21 +72,17 @@ def test_without_an_installed_package_there_is_no_profile(monkeypatch, prefixes)
     assert environment == JAZZY
 
 
-@BOTH
-@pytest.mark.parametrize('chosen', [
-    {}, {'RMW_IMPLEMENTATION': ''}, {'RMW_IMPLEMENTATION': 'rmw_fastrtps_cpp'},
-    {'RMW_IMPLEMENTATION': 'rmw_fastrtps_dynamic_cpp'},
-])
-def test_with_fast_dds_and_no_other_choice_it_is_used(tmp_path, monkeypatch, distro, chosen):
+@pytest.mark.parametrize(('profile', 'environment'), CASES)
+def test_with_its_middleware_and_no_other_choice_it_is_used(
+        tmp_path, monkeypatch, profile, environment):
     monkeypatch.chdir(tmp_path)
-    environment = {'ROS_DISTRO': distro, **chosen}
-    sentence = use_profile(environment)
-    variable = BY_DISTRO[distro].variable
-    profile = Path(environment[variable])
-    assert profile.parts[-2:] == Path(BY_DISTRO[distro].file).parts
-    assert profile.is_file()
-    assert str(profile) in sentence
-    assert f'set {variable} to use your own' in sentence
+    given = dict(environment)
+    sentence = use_profile(given)
+    path = Path(given[profile.variable])
+    assert path.parts[-2:] == Path(profile.file).parts
+    assert path.is_file()
+    assert str(path) in sentence
+    assert f'set {profile.variable} to use your own' in sentence
 
 
 @BOTH
