@@ -16,6 +16,7 @@ from sdf_pose_bridge.geometry.formats import POSE_FORMATS, ROTATION_FORMATS
 from sdf_pose_bridge.ros.cdr import POSE_TYPES
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.shape_types import SHAPE_TYPES
+from sdf_pose_bridge.sdformat.source_formats import SourceFormat
 from sdf_pose_bridge.sdformat.specification import JOINT_TYPES
 from sdf_pose_bridge.sdformat.versions import NEWEST, OLDEST
 
@@ -98,6 +99,18 @@ def test_name(page, name):
 def test_format_of_the_service(name):
     text = text_of('sdf_pose_bridge_interfaces/srv/ConvertPoses.srv')
     assert re.search(rf'^#   {name} ', text, re.MULTILINE)
+
+
+def test_the_page_about_formats_has_their_numbers():
+    listed = dict(re.findall(
+        r'^\| `(\w+)` \| (\d+) \|', text_of('docs/pose_formats.md'), re.MULTILINE))
+    assert 'sdf_rpy' in listed
+    assert listed == {name: str(POSE_FORMATS[name].row_length) for name in listed}
+
+
+@pytest.mark.parametrize('source_format', SourceFormat, ids=lambda each: each.title)
+def test_source_format(source_format):
+    assert source_format.title in text_of('docs/what_is_read.md')
 
 
 @pytest.mark.parametrize('kind', [

@@ -251,7 +251,7 @@ def test_a_name_belongs_to_one_format():
     names = [
         name for each in (*POSE_FORMATS.values(), *ROTATION_FORMATS.values())
         for name in (each.name, *each.synonyms)]
-    assert len(names) == len(set(names))
+    assert [name for name in {*names} if names.count(name) > 1] == []
 
 
 @pytest.mark.parametrize(('synonym', 'name'), [

@@ -6,6 +6,7 @@ import math
 
 import pytest
 
+from sdf_pose_bridge.geometry import pose_names
 from sdf_pose_bridge.geometry.formats import converted_poses, PoseFormatError
 from sdf_pose_bridge.geometry.pose_texts import FORMATS, TextDivider, typed_poses_from_text
 
@@ -119,3 +120,9 @@ def test_numbers_of_one_name_are_in_the_requested_format(text, source, name):
 def test_rows_of_a_matrix_are_no_columns(text):
     with pytest.raises(PoseFormatError, match='franka_matrix has 16'):
         typed_poses_from_text(text, FORMATS['franka_matrix'])
+
+
+def test_the_tables_name_formats_that_exist():
+    named = {each.format for each in (*pose_names.ROTATIONS, *pose_names.QUATERNION)}
+    named = named.union(pose_names.TEXTS, *(formats for _, *formats in pose_names.CALLS.values()))
+    assert named - pose_names.FORMATS.keys() == {'euler'}  # of which <compiler> has the sequence
