@@ -5,6 +5,8 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator
+import contextlib
 from functools import partial
 import sys
 import threading
@@ -16,7 +18,7 @@ from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.printed_text import printable
 from sdf_pose_bridge.scene.loading import load
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.limits import Usage
+from sdf_pose_bridge.sdformat.limits import FOLLOWED, Usage
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
 from sdf_pose_bridge.tf.lookup import lookup_from_scene
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
@@ -35,23 +37,47 @@ def scene_from_file(path: str, options: argparse.Namespace, **parts: bool) -> Sc
     :raises SdfError: if the file is not valid.
     """
     is_input = path == STANDARD_INPUT
-    # Tells people why nothing happens.
-    timer = threading.Timer(
-        1.0, print, (f'reading {printable(path)} ...',), {'file': sys.stderr})
-    if sys.stderr.isatty():
-        timer.start()
-    try:
+    with told_on_terminal(path):
         text = bytes_from_file('/dev/stdin' if is_input else path, Usage(), allows_pipe=True)
         path = '<stdin>' if is_input else path
         return loader(path, options, **parts)(texts={path: text})
-    finally:
-        timer.cancel()
 
 
 def loader(path: str, options: argparse.Namespace, **parts: Any) -> partial[Scene]:
     """Return a function that loads a file as :func:`scene_from_file`."""
     return partial(load, path, resource_paths=options.resource_paths,
                    on_missing_include='skip' if options.skip_missing else 'error', **parts)
+
+
+@contextlib.contextmanager
+def told_on_terminal(path: str) -> Iterator[None]:
+    """Tell on a terminal how much was read so far, while the block lasts longer than a second."""
+    if not sys.stderr.isatty():
+        yield
+        return
+    followed, has_ended = list[Usage](), threading.Event()
+
+    def tell() -> None:
+        told = ''
+        while not has_ended.wait(0.2 if told else 1.0):
+            usage = [Usage(), *followed][-1]
+            megabytes = 1e-6 * (usage.limits.bytes_read - usage.left('bytes_read'))
+            before, told = told, (f'read {megabytes:.1f} MB and {sum(map(len, usage.elements)):,} '
+                                  f'elements of {printable(path)}')
+            if told != before:
+                # It is cut at the border; what comes next replaces it, even after a kill.
+                print(f'\x1b[K\x1b[?7l{told}\x1b[?7h\r', end='', file=sys.stderr, flush=True)
+        if told:
+            print('\x1b[K', end='', file=sys.stderr, flush=True)
+
+    thread, before = threading.Thread(target=tell, daemon=True), FOLLOWED.set(followed)
+    thread.start()
+    try:
+        yield
+    finally:
+        FOLLOWED.reset(before)
+        has_ended.set()
+        thread.join()
 
 
 def load_file(

@@ -16,7 +16,7 @@ from sdf_pose_bridge.cli.given_poses import (
     PoseReader,
     poses_from_rows,
 )
-from sdf_pose_bridge.cli.input_files import loader, scene_of, STANDARD_INPUT
+from sdf_pose_bridge.cli.input_files import loader, scene_of, STANDARD_INPUT, told_on_terminal
 from sdf_pose_bridge.cli.printing import CommandError, print_message
 from sdf_pose_bridge.export.pose_setting import are_close, pose_change
 from sdf_pose_bridge.geometry.pose_texts import FORMATS
@@ -97,10 +97,11 @@ def run(options: argparse.Namespace) -> int:
     current = lookup.pose(part, options.relative_to).pose
     asked = Pose(*(given if source.position else current)[:3],
                  *(current if is_position else given)[3:])
-    change = pose_change(
-        scene, element, pose_product(asked, lookup.pose_of_element(element, part)),
-        lookup_from_scene, loader(options.files[0], options), relative_to=options.relative_to,
-        all_instances=options.all_instances)
+    with told_on_terminal(options.files[0]):
+        change = pose_change(
+            scene, element, pose_product(asked, lookup.pose_of_element(element, part)),
+            lookup_from_scene, loader(options.files[0], options), relative_to=options.relative_to,
+            all_instances=options.all_instances)
     if options.by and not are_close(
             lookup_from_scene(change.scene).pose(part, options.relative_to).pose, asked):
         msg = f'"{part}" does not move with "{printable(own_name)}"'

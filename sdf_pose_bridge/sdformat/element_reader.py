@@ -102,6 +102,7 @@ class ElementReader:
         self._sources = sources
         self._reads_plugins = plugins
         self._table = ElementsBuilder(sources.paths, has_shapes=shapes)
+        sources.usage.elements.append(self._table.names)
         self._names = SiblingNames(self._table, sources)
         self._undefined = UndefinedReporter(sources, SourceFormat.SDFORMAT)
         self._readers_of_details: dict[Kind, tuple[str, Callable[[XmlElement], Any]]] = {

@@ -10,6 +10,7 @@ which it is read.
 
 from __future__ import annotations
 
+from contextvars import ContextVar
 import enum
 from typing import NamedTuple
 
@@ -40,6 +41,9 @@ class Limits(NamedTuple):
 
 DEFAULT_LIMITS = Limits()
 
+FOLLOWED: ContextVar[list[Usage] | None] = ContextVar('followed', default=None)
+"""Gets the amounts of each load that begins, for one who tells how far it is."""
+
 
 class MissingInclude(enum.Enum):
     """Treatment of includes that are not found."""
@@ -62,6 +66,10 @@ class Usage:
         self._used = dict.fromkeys(Limits._fields, 0)
         self.files: list[str] = []
         """Paths of the files that were read."""
+        self.elements: list[list[str]] = []
+        """Names of the elements with a pose that were read, in lists that grow."""
+        if (followed := FOLLOWED.get()) is not None:
+            followed.append(self)
 
     def add(self, limit: str, amount: int, place: Place) -> None:
         """

@@ -136,8 +136,11 @@ def bytes_from_file(path: str, usage: Usage, *, allows_pipe: bool = False) -> by
             os.set_blocking(file.fileno(), True)
             usage.add('bytes_read', status.st_size, place)
             usage.files.append(path)
-            text = file.read(usage.left('bytes_read') + 1 if is_pipe else status.st_size)
-            usage.add('bytes_read', len(text) - status.st_size, place)
+            parts = [file.read(status.st_size)]
+            while is_pipe and (part := file.read1()):
+                usage.add('bytes_read', len(part), place)
+                parts.append(part)
+            text = b''.join(parts)
             if text.startswith(b'version https://git-lfs.'):
                 msg = 'the file is a pointer of Git LFS; "git lfs pull" fetches its content'
                 raise FileReadError(msg, place)

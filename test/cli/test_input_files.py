@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The files of a command."""
 
+import contextlib
 import os
 import pty
-import select
+import re
 import subprocess
 
 from command_line import COMMAND, ENVIRONMENT
@@ -14,7 +15,8 @@ import pytest
 from sdf_texts import model_file
 
 from sdf_pose_bridge import SdfError
-from sdf_pose_bridge.cli.input_files import load_file, scene_of
+from sdf_pose_bridge.cli.input_files import load_file, scene_of, told_on_terminal
+from sdf_pose_bridge.sdformat.limits import FOLLOWED
 
 
 def test_a_terminal_is_read_to_its_end(on_terminal):
@@ -35,16 +37,41 @@ def test_a_command_that_needs_a_scene_ends_with_the_errors_of_its_file(options):
     assert [each.line for each in error.value.errors] == [3, 4]
 
 
-def test_a_long_load_is_told_on_a_terminal(files):
+def test_a_long_load_tells_bytes_and_elements_on_a_terminal_until_it_ends(files):
+    count = 100_000
+    frames = ''.join(f'<frame name="f{number}"/>' for number in range(count))
+    begin = b'<sdf version="1.9">'.ljust(600_000)
+    rest = f'<model name="m"><link name="l"/>{frames}</model></sdf>'.encode()
     reader, writer = pty.openpty()
     with os.fdopen(reader, 'rb') as terminal, started(
             [*COMMAND, 'check', '-'], cwd=files, env=ENVIRONMENT, stdin=subprocess.PIPE,
-            stderr=writer) as process:
+            stdout=subprocess.DEVNULL, stderr=writer) as process:
         os.close(writer)
-        assert select.select([terminal], [], [], 60)[0]
-        assert terminal.read1() == b'reading - ...\r\n'
-        process.communicate((files / 'good.sdf').read_bytes(), timeout=DEADLINE_S)
+        told = terminal.read1()
+        assert told == b'\x1b[K\x1b[?7lread 0.0 MB and 0 elements of -\x1b[?7h\r'
+        process.stdin.write(begin)
+        process.stdin.flush()
+        while b' 0.6 MB and 0 ' not in told:
+            told += terminal.read1()
+        process.stdin.write(rest)
+        process.stdin.close()
+        # Linux reports the end of a terminal as an error.
+        with contextlib.suppress(OSError):
+            while part := terminal.read1():
+                told += part
+        process.wait(DEADLINE_S)
     assert process.returncode == 0
+    size = f'{1e-6 * len(begin + rest):.1f} MB'
+    counts = [int(each.replace(',', '')) for each in re.findall(
+        rf'read {size} and ([0-9,]+) elements', told.decode())]
+    assert counts == sorted({*counts})
+    assert 0 < counts[-1] <= count + 3
+    assert told.endswith(b' of -\x1b[?7h\r\x1b[K')
+
+
+def test_a_load_without_a_terminal_is_not_followed(capsys):
+    with told_on_terminal('a.sdf'):
+        assert FOLLOWED.get() is None
 
 
 @pytest.mark.parametrize(('path', 'cure'), [
