@@ -20,6 +20,12 @@ def period():
     return period
 
 
+def test_at_first_there_is_no_period_and_nothing_waits():
+    period = PublishPeriod()
+    assert (period.has_begun, [*period.awaited]) == (False, [])
+    assert period.end([]).tolist() == []
+
+
 def test_transforms_wait_once_for_the_end_and_then_all_sources_are_awaited(period):
     period.begin(20, [OLD])
     period.add(np.array([3, 4]))
