@@ -231,7 +231,6 @@ def poses_from_bytes(data: bytes, type_: PoseType) -> Iterator[StampedPose]:
             count, = length_format.unpack_from(data, place)
             place += _LENGTH
         for _ in range(count):
-            place += -place % 4
             sec, nanosec, _ = stamp_and_length.unpack_from(data, place)
             frame_id, place = _string_from_bytes(data, place + _STAMP, length_format)
             child_frame_id = ''

@@ -34,14 +34,18 @@ def test_each_pose_has_these_attributes(name):
 
 @pytest.mark.parametrize(('rotation_format', 'degrees', 'expected'), [
     ('', '', PoseFormat()), ('', 'True', PoseFormat(is_degrees=True)),
+    ('euler_rpy', '', PoseFormat()),
     ('quat_xyzw', '', PoseFormat(is_quaternion=True))])
 def test_attributes_are_a_format(rotation_format, degrees, expected):
     assert pose_format_from_attributes(rotation_format, degrees) == expected
 
 
-@pytest.mark.parametrize(('rotation_format', 'degrees'), [('quat', ''), ('quat_xyzw', '1')])
-def test_wrong_attributes_are_refused(rotation_format, degrees):
-    with pytest.raises(PoseTextError):
+@pytest.mark.parametrize(('rotation_format', 'degrees', 'message'), [
+    ('quat', '', '^rotation_format="quat" must be euler_rpy or quat_xyzw$'),
+    ('quat_xyzw', '1',
+     '^degrees="true" cannot be combined with rotation_format="quat_xyzw"$')])
+def test_wrong_attributes_are_refused(rotation_format, degrees, message):
+    with pytest.raises(PoseTextError, match=message):
         pose_format_from_attributes(rotation_format, degrees)
 
 

@@ -60,7 +60,7 @@ def test_at_lock_the_first_angle_is_zero(axes, is_upper):
     middle = (math.pi if axes[0] == axes[2] else 0.5 * math.pi) if is_upper else (
         0.0 if axes[0] == axes[2] else -0.5 * math.pi)
     quats = sequence.quaternions_from_numbers(np.array([[0.4, middle, 0.3]]))
-    assert sequence.near_lock(quats).all()
+    assert sequence.near_lock(quats[np.newaxis]).all()
     assert not sequence.are_canonical((0.4, middle, 0.3), math.pi)
     first, at_lock, last = sequence.numbers_from_quaternions(quats)[0]
     assert (first, at_lock) == (0.0, middle)
@@ -69,6 +69,6 @@ def test_at_lock_the_first_angle_is_zero(axes, is_upper):
 
 @every_sequence
 def test_other_angles_are_not_near_lock(axes):
-    angles = np.array([[3.0, 0.1, -3.0]])
+    angles = np.array([[math.pi, 0.1, -math.pi]])
     assert not AXES[axes].near_lock(AXES[axes].quaternions_from_numbers(angles)).any()
     assert AXES[axes].are_canonical(tuple(angles[0]), math.pi)

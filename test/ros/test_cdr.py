@@ -171,9 +171,19 @@ def test_a_message_that_says_it_has_more_than_it_has_is_refused(count):
 
 
 def test_a_message_that_is_too_large_is_refused():
-    whole = joint_state([], [], frame_id='x' * MOST_BYTES)
+    largest = joint_state([], []).ljust(MOST_BYTES, b'x')
+    assert joint_state_from_bytes(largest)[1].names == ()
     with pytest.raises(ValueError, match=f'more than {MOST_BYTES}'):
-        joint_state_from_bytes(whole)
+        joint_state_from_bytes(largest + b'x')
+
+
+@pytest.mark.parametrize(('fields', 'reason'), [
+    ({'positions': [1.0, 2.0]}, '1 names and 2 positions, and each name must have a position$'),
+    ({'nanosec': 10**9}, 'nanosec must be less than 1000000000'),
+])
+def test_fields_that_contradict_one_another_are_refused(fields, reason):
+    with pytest.raises(ValueError, match=reason):
+        joint_state_from_bytes(joint_state(['a'], **{'positions': [1.0], **fields}))
 
 
 def test_another_encoding_is_refused():
@@ -203,6 +213,12 @@ def test_names_of_another_message_do_not_mislead(known, named):
     _, found, values = joint_state_from_bytes(joint_state(names, positions), before)
     assert found.names == names
     np.testing.assert_array_equal(values, positions)
+
+
+@pytest.mark.parametrize('length', range(9))
+def test_names_are_behind_a_frame_id_of_any_length(length):
+    data = joint_state(['a'], [1.0], frame_id='x' * length)
+    assert joint_state_from_bytes(data)[1].names == ('a',)
 
 
 def test_a_name_that_is_not_utf_8_is_read_as_far_as_it_is():
