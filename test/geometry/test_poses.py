@@ -142,6 +142,17 @@ def test_a_motion_is_the_exponential_of_its_twist(
     assert_same_pose(pose, matrix_from_pose(before) @ motion @ matrix_from_pose(after))
 
 
+def test_several_motions_are_those_of_each():
+    before, after = more_poses_than_a_block()[:, :500]
+    axes, points = before[:, 3:6], after[:, :3]
+    parts = (before, axes / np.linalg.norm(axes, axis=1, keepdims=True), points[::-1],
+             points[:, 0], points[:, 1], after)
+    found = ScrewMotions(*parts).poses(points[:, 2])
+    each = [ScrewMotions(*(part[row:row + 1] for part in parts)).poses(points[row:row + 1, 2])[0]
+            for row in range(0, 500, 100)]
+    assert_close(found[::100], each)
+
+
 def test_no_motions():
     none = np.empty((0, 7))
     motions = ScrewMotions(none, none[:, :3], none[:, :3], none[:, 0], none[:, 0], none)
