@@ -8,6 +8,7 @@ import argparse
 from collections.abc import Iterator
 import contextlib
 from functools import partial
+import os
 import sys
 import threading
 from typing import Any
@@ -27,17 +28,20 @@ STANDARD_INPUT = '-'
 """The argument for the standard input."""
 
 
-def scene_from_file(path: str, options: argparse.Namespace, **parts: bool) -> Scene:
+def scene_from_file(
+    path: str, options: argparse.Namespace, terminal: int = 2, **parts: bool,
+) -> Scene:
     """
     Load a file, or a pipe such as the shell's ``<(command)``.
 
     :param path: path of the file; ``-`` for the standard input, beside which includes are searched
         in the working directory.
+    :param terminal: as for :func:`told_on_terminal`.
     :param parts: ``shapes`` and ``plugins`` as for :func:`~sdf_pose_bridge.load`.
     :raises SdfError: if the file is not valid.
     """
     is_input = path == STANDARD_INPUT
-    with told_on_terminal(path):
+    with told_on_terminal(path, terminal):
         text = bytes_from_file('/dev/stdin' if is_input else path, Usage(), allows_pipe=True)
         path = '<stdin>' if is_input else path
         return loader(path, options, **parts)(texts={path: text})
@@ -50,9 +54,9 @@ def loader(path: str, options: argparse.Namespace, **parts: Any) -> partial[Scen
 
 
 @contextlib.contextmanager
-def told_on_terminal(path: str) -> Iterator[None]:
-    """Tell on a terminal how much was read so far, while the block lasts longer than a second."""
-    if not sys.stderr.isatty():
+def told_on_terminal(path: str, terminal: int = 2) -> Iterator[None]:
+    """Tell on a terminal, by its descriptor, how much was read so far, from the second second."""
+    if not os.isatty(terminal):
         yield
         return
     followed, has_ended = list[Usage](), threading.Event()
@@ -66,9 +70,9 @@ def told_on_terminal(path: str) -> Iterator[None]:
                                   f'elements of {printable(path)}')
             if told != before:
                 # It is cut at the border; what comes next replaces it, even after a kill.
-                print(f'\x1b[K\x1b[?7l{told}\x1b[?7h\r', end='', file=sys.stderr, flush=True)
+                os.write(terminal, f'\x1b[K\x1b[?7l{told}\x1b[?7h\r'.encode())
         if told:
-            print('\x1b[K', end='', file=sys.stderr, flush=True)
+            os.write(terminal, b'\x1b[K')
 
     thread, before = threading.Thread(target=tell, daemon=True), FOLLOWED.set(followed)
     thread.start()

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 import contextlib
 from functools import partial
 import importlib
+import os
 from pathlib import Path
 import re
 import shlex
@@ -96,11 +97,12 @@ def run(options: argparse.Namespace) -> int:
     viewer = _viewer()
     # Otherwise a browser that draws a picture would outlive this process.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    # It is made before the server starts threads.
+    # It is made before the server starts threads, and its own standard streams lead nowhere.
+    read = partial(scene_from_file, shapes=True, terminal=os.dup(2))
     with contextlib.closing(LimitedProcess()) as process:
         (path,), read_since_ns = options.files, time.time_ns()
         call = partial(_result_of_process, process, path)
-        load = partial(call, partial(scene_from_file, shapes=True), path, options)
+        load = partial(call, read, path, options)
         errors: Sequence[SdfError] = ()
         try:
             scene = load()

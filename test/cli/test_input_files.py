@@ -69,8 +69,21 @@ def test_a_long_load_tells_bytes_and_elements_on_a_terminal_until_it_ends(files)
     assert told.endswith(b' of -\x1b[?7h\r\x1b[K')
 
 
-def test_a_load_without_a_terminal_is_not_followed(capsys):
-    with told_on_terminal('a.sdf'):
+def test_a_load_in_another_process_is_told_on_the_terminal(files):
+    pytest.importorskip('viser', reason='needs viser')
+    reader, writer = pty.openpty()
+    with os.fdopen(reader, 'rb') as terminal, started(
+            [*COMMAND, 'view', '-', '-o', 'page.html'], cwd=files, env=ENVIRONMENT,
+            stdin=subprocess.PIPE, stderr=writer) as process:
+        os.close(writer)
+        assert b'read 0.0 MB and 0 elements of -' in terminal.read1()
+        process.communicate((files / 'good.sdf').read_bytes(), timeout=DEADLINE_S)
+        assert terminal.read1() == b'\x1b[K'
+    assert process.returncode == 0
+
+
+def test_a_load_without_a_terminal_is_not_followed(tmp_path):
+    with (tmp_path / 'log').open('w') as log, told_on_terminal('a.sdf', log.fileno()):
         assert FOLLOWED.get() is None
 
 
