@@ -60,3 +60,10 @@ def test_each_attribute_is_read_written_and_pasted(name):
     assert blank.with_pose(3, pose, 1e-9).new_text.decode() == text.format(numbers)
     pasted, = typed_poses_from_text(element.format(numbers))
     assert converted_poses(pasted.numbers, pasted.format, 'sdf_quat_xyzw') == pytest.approx(pose)
+
+
+@pytest.mark.parametrize('name', definition_of('pose').attributes)
+def test_no_attribute_of_a_pasted_pose_is_called_undefined(name):
+    value, numbers, _ = VALUES.get(name, ('a', '1 2 3 0 0 0', ''))
+    pasted, = typed_poses_from_text(f'<pose {name}="{value}">{numbers}</pose>')
+    assert 'not defined' not in ''.join(pasted.notes)
