@@ -102,7 +102,8 @@ class NameScopes:
                     'itself is relative to it')
         scoped = reference.replace('/', SEPARATOR)
         if self.frame(scope, scoped) is not None:
-            return f'; did you mean "{scoped}"?'
+            return (f'; did you mean "{scoped}"?' if scoped != reference else
+                    f'; a joint finds no name that begins with "{SEPARATOR}"')
         outer = int(self._elements.parents[scope])
         while outer >= 0:
             if self.frame(outer, scoped) is not None:
