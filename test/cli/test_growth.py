@@ -14,11 +14,18 @@ import pytest
 from sdf_pose_bridge.cli.main import main, new_parser
 
 
-def test_each_command_has_a_row():
+def test_each_command_and_each_option_that_repeats_has_a_row():
     (commands,) = (action.choices for action in new_parser()._actions
                    if isinstance(action, argparse._SubParsersAction))
     assert {*ROWS} == {*commands}
     assert all(ROWS.values())
+    repeated = {
+        option for parser in commands.values() for action in parser._actions
+        for option in action.option_strings
+        if isinstance(action, argparse._AppendAction) or action.nargs in ('+', '*')}
+    given = {text.partition('=')[0] for rows in ROWS.values() for _, run_of in rows.values()
+             for text in run_of(2).arguments}
+    assert repeated - given == set()
 
 
 @pytest.mark.parametrize(('command', 'row'), [

@@ -50,7 +50,12 @@ MODELS = (f'|<model name="m#">{LINK}<plugin name="gz::sim::systems::PosePublishe
           '</model>|')
 
 ROWS: dict[str, dict[str, tuple[int, Callable[[int], Run]]]] = {
-    'check': {'missing meshes': (600, of(MESHES))},
+    'check': {
+        'missing meshes': (600, of(MESHES)),
+        'folders of includes': (300, lambda n: Run(
+            ('scene.sdf', *['-I', '.'] * n),
+            {'scene.sdf': model('<include><uri>model://none</uri></include>')})),
+    },
     'poses': {
         'positions of joints': (400, lambda n: Run(
             ('scene.sdf', *(f'--joint=j{i}=0.1' for i in range(n))),
@@ -76,6 +81,8 @@ ROWS: dict[str, dict[str, tuple[int, Callable[[int], Run]]]] = {
         'models': (400, of(world_file(MODELS))),
     },
     'convert': {
+        'factors': (300, lambda n: Run(
+            (*CONVERT, *POSE, *['--times', *POSE, '--times-inverse', *POSE] * n), {})),
         'lines': (5000, lambda n: Run(CONVERT, {}, '1 2 3 0.1 0.2 0.3\n' * n)),
         'numbers of a list': (10_000, lambda n: Run(CONVERT, {}, 'x:\n' + '- 0.1\n' * n)),
         'an open bracket': (20_000, lambda n: Run(CONVERT, {}, 'x: [\n' + '0.1,\n' * n)),
