@@ -45,7 +45,8 @@ def ask(listener, frame, x, frame_id='', *, dry_run=False):
 
 def test_measured_poses_go_into_the_files(
         start_bridge, start_listener, ros_domain, path):
-    start_bridge(sdf_file=path, allow_set_pose=True, use_joint_states=True).wait_until_started()
+    bridge = start_bridge(sdf_file=path, allow_set_pose=True, use_joint_states=True)
+    bridge.wait_until_started()
     client, observer = start_listener(), start_listener()
     listen_to_tf(observer)
     wait_for_x(observer, 5.0, 'fixture')
@@ -60,6 +61,7 @@ def test_measured_poses_go_into_the_files(
     answer = ask(client, 'fixture', 0.5, 'arm/tool')
     assert (answer.success, answer.message) == (True, '')
     assert (answer.file, answer.line) == (str(path), 5)
+    bridge.wait_for_line(f'wrote the pose of "fixture" to {path}:5')
     assert path.read_text() == ARM.replace(
         '5 0 0 0 0 0', '0 1.5 0 0 0 1.570796327')
     wait_for_x(observer, 0.0, 'fixture')

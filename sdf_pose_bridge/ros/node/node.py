@@ -165,6 +165,8 @@ class SdfPoseBridge:
         try:
             response: SetPose.Response = set_pose(request, self._loaded, self._result)
             if not request.dry_run:
+                self._logger.info(line_from_text(
+                    f'wrote the pose of "{request.frame}" to {response.file}:{response.line}'))
                 loaded = self._load(self._settings)
                 frames = self._frames_from_scene(loaded, self._settings)
         except Exception as error:  # noqa: BLE001 - the client must be answered
