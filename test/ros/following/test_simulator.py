@@ -175,6 +175,12 @@ def test_a_filter_that_would_be_too_long_is_none(simulator, monkeypatch):
     assert simulator._request.filters.filter == ''
 
 
+def test_the_last_answers_wait_and_their_cost_counts(simulator):
+    simulator._answers.extend(range(module.MOST_WAITING + 1))
+    simulator._costs_s.extend([0.0] + [1.0] * module._COSTS)
+    assert (simulator._answers[0], min(simulator._costs_s)) == (1, 1.0)
+
+
 def test_answers_that_take_long_are_asked_for_less_often(
         node, simulator, service, monkeypatch, capfd):
     monkeypatch.setattr(module, 'LARGEST_SHARE', 1e-2)
