@@ -152,9 +152,9 @@ CameraSensor.cc: camera camera/triggered=true
 RenderUtil.cc:1737 sensors Image image @/image
 673 sensors CameraInfo camera_info @/camera_info
 412 commands Boolean trigger @/image/trigger
-CameraSensor.cc: camera camera/triggered=true camera/trigger_topic=z
-RenderUtil.cc:1737 sensors Image image @/image
-673 sensors CameraInfo camera_info @/camera_info
+CameraSensor.cc: camera topic=y/x camera/triggered=true camera/trigger_topic=z
+396 sensors Image image /y/x
+673 sensors CameraInfo camera_info /y/camera_info
 409 commands Boolean trigger /z
 DepthCameraSensor.cc: depth_camera,depth
 RenderUtil.cc:1738 sensors Image depth_image @/depth_image
