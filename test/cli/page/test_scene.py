@@ -107,7 +107,7 @@ def test_dark_page_waits_for_its_file_and_says_when_its_program_has_ended(tab, t
         tab.wait_for(f"{strip}?.querySelector('.errors')?.innerText.match("
                      "'bass.* [(]also line 9[)]$')")
         tab.wait_for(f"{strip}.getBoundingClientRect().right"
-                     " <= document.querySelector('canvas').clientWidth")
+                     " <= document.querySelector('canvas')?.clientWidth")
         assert 'no frames' not in tab.run('document.body.innerText')
         (tmp_path / 'cell.sdf').write_text(TEXT)
         tab.wait_for(f"{ROWS}.length === 5 && !document.querySelector('.errors')")
