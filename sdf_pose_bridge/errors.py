@@ -3,42 +3,7 @@
 """
 Errors and warnings about SDFormat files, with codes of libsdformat (``sdf::ErrorCode``).
 
-All errors derive from one class, and each cause has its own::
-
-    SdfError
-      LoadError
-      FileReadError
-        TemporaryReadError
-      LimitError
-      ParsingError
-      ConversionError
-      AttributeInvalidError
-      AttributeMissingError
-      ElementInvalidError
-      ElementMissingError
-      ElementIncorrectTypeError
-      ReservedNameError
-      DuplicateNameError
-      ModelWithoutLinkError
-      CanonicalLinkError
-      RelativeToError
-      RelativeToCycleError
-      AttachedToError
-      AttachedToCycleError
-      LinkInertiaError
-      JointChildError
-      JointParentError
-      JointSameLinkError
-      ExpressedInError
-      MimicError
-      UriLookupError
-      PlacementFrameError
-      MergeIncludeError
-      PoseNotSetError
-      UrdfNotMadeError
-      FileWriteError
-      JointPositionError
-      UnknownFrameError
+All errors derive from :class:`SdfError`, and each cause has its own class.
 """
 
 from __future__ import annotations
