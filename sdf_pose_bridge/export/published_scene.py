@@ -13,7 +13,7 @@ import enum
 from pathlib import Path
 from typing import NamedTuple
 
-from sdf_pose_bridge.errors import SdfError, SdfWarning, TemporaryReadError
+from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.limits import MissingInclude
 from sdf_pose_bridge.tf.joint_positions import JointPositions, UnreportedJoints
@@ -85,9 +85,3 @@ def fingerprint_of_scene(scene: Scene) -> bytes:
     import hashlib
     return hashlib.blake2b(b'\0'.join([
         scene.poses.tobytes(), *(name.encode() for name in scene.names)])).digest()
-
-
-def is_temporary(error: Exception) -> bool:
-    """Return whether reading the same files again may succeed after an error of a load."""
-    return isinstance(error, SdfError) and any(
-        isinstance(each, TemporaryReadError) for each in error.errors)

@@ -8,7 +8,8 @@ from collections.abc import Iterable
 import math
 import time
 
-from sdf_pose_bridge.export.published_scene import is_temporary, LoadedScene
+from sdf_pose_bridge.errors import SdfError, TemporaryReadError
+from sdf_pose_bridge.export.published_scene import LoadedScene
 from sdf_pose_bridge.file_watcher import FileWatcher
 
 RETRY_PERIOD_S = 1.0
@@ -36,13 +37,12 @@ class FileFollower:
         self._failure = self._reported = []
         self._retry_time = math.inf
 
-    def retry_after(self, error: Exception) -> None:
-        """Read the files again soon if the error is a temporary one."""
-        self._retry_time = time.monotonic() + RETRY_PERIOD_S if is_temporary(error) else math.inf
-
-    def follow_also(self, files: Iterable[str]) -> None:
-        """Also follow the files that have to change before reading can succeed."""
+    def follow_error(self, error: Exception, files: Iterable[str]) -> None:
+        """Also follow the files behind an error, and read again soon if it is a temporary one."""
         self._watcher.watch_also(files)
+        is_temporary = isinstance(error, SdfError) and any(
+            isinstance(each, TemporaryReadError) for each in error.errors)
+        self._retry_time = time.monotonic() + RETRY_PERIOD_S if is_temporary else math.inf
 
     def has_to_read(self) -> bool:
         """Return whether the files have to be read again, and remember their state."""

@@ -257,9 +257,8 @@ class SdfPoseBridge:
             loaded = self._load(self._settings)
             frames = self._frames_from_scene(loaded, self._settings)
         except Exception as error:  # noqa: BLE001 - includes defects
-            lines = self._lines_from_error(error)
-            self._follower.retry_after(error)
-            self._follower.follow_also(files_behind_error(error, self._settings.load_request))
+            lines, request = self._lines_from_error(error), self._settings.load_request
+            self._follower.follow_error(error, files_behind_error(error, request))
             return lines
         self._replace(loaded, frames)
         return []

@@ -44,7 +44,7 @@ def reported(follower, request_of_file):
             try:
                 follower.follow(loaded_scene_from_request(request_of_file))
             except SdfError as error:
-                follower.follow_also(files_behind_error(error, request_of_file))
+                follower.follow_error(error, files_behind_error(error, request_of_file))
                 failure = [str(error)]
         return follower.failure_of_period(failure)
     return report
@@ -92,7 +92,7 @@ def test_a_failure_of_a_requested_reading_is_reported_at_once(follower):
 
 def test_a_file_behind_an_error_is_followed(follower, tmp_path):
     path = tmp_path / 'included.sdf'
-    follower.follow_also([str(path)])
+    follower.follow_error(BROKEN, [str(path)])
     assert not follower.has_to_read()
     path.write_text(GOOD)
     assert follower.has_to_read()
@@ -101,10 +101,10 @@ def test_a_file_behind_an_error_is_followed(follower, tmp_path):
 
 def test_a_change_before_files_are_read_again_is_read_once(follower, file, monkeypatch):
     monkeypatch.setattr(file_follower, 'RETRY_PERIOD_S', 0.0)
-    follower.retry_after(BUSY)
+    follower.follow_error(BUSY, [])
     file.write_text(HALF)
     assert follower.has_to_read()
-    follower.retry_after(BROKEN)
+    follower.follow_error(BROKEN, [])
     assert not follower.has_to_read()
 
 
@@ -113,7 +113,7 @@ def test_a_change_before_files_are_read_again_is_read_once(follower, file, monke
 def test_files_are_read_again_soon_after_a_temporary_failure(
         follower, request_of_file, monkeypatch, error, is_retried):
     monkeypatch.setattr(file_follower, 'RETRY_PERIOD_S', 0.0)
-    follower.retry_after(error)
+    follower.follow_error(error, [])
     assert follower.has_to_read() is is_retried
     follower.follow(loaded_scene_from_request(request_of_file))
     assert not follower.has_to_read()
