@@ -136,22 +136,19 @@ def line_about_frames(loaded: LoadedScene) -> str:
 
 def lines_about_scene(loaded: LoadedScene) -> list[str]:
     """Return lines about a scene that is published now."""
-    tree = loaded.tree
+    tree, prefix = loaded.tree, loaded.request.tf_options.frame_prefix
     transforms = count_in_words(tree.transform_count, 'transform')
     size = f'{line_about_frames(loaded)} with {transforms}, root frame "{tree.root_frame}"'
-    lines = [
-        f'{size} (read in {1e3 * loaded.seconds:.0f} ms)',
-        line_about_prefix(loaded.request.tf_options.frame_prefix),
-        line_about_gazebo(loaded.gazebo_warning_count),
-        line_about_detached_models(tree)]
-    return [line for line in lines if line]
-
-
-def line_about_prefix(prefix: str) -> str:
-    """Return a question about a prefix that runs into the names; '' if it does not."""
-    return '' if not prefix[-1:].isalnum() else (
-        f'frame ids begin with frame_prefix "{prefix}", as in "{prefix}base_link"; did you mean '
-        f'"{prefix}/"?')
+    lines = [f'{size} (read in {1e3 * loaded.seconds:.0f} ms)']
+    if prefix[-1:].isalnum():
+        lines.append(
+            f'frame ids begin with frame_prefix "{prefix}", as in "{prefix}base_link"; did you '
+            f'mean "{prefix}/"?')
+    if loaded.gazebo_warning_count:
+        lines.append(
+            f'not shown: {count_in_words(loaded.gazebo_warning_count, "warning")} about Gazebo; '
+            'for all warnings, type "sdf_pose check FILE", or "sdf_pose check -" for a text')
+    return [*lines, *filter(None, [line_about_detached_models(tree)])]
 
 
 def lines_about_lost_frames(before: TfTree, after: TfTree) -> list[str]:
@@ -182,13 +179,6 @@ def line_about_detached_models(tree: TfTree) -> str:
     return (
         f'no transform to {names_in_line(names)}, {what}: odometry or localization can publish '
         f'one, or this node from "{tree.root_frame}" with anchor_models "all"')
-
-
-def line_about_gazebo(count: int) -> str:
-    """Return a line with the number of warnings for Gazebo only; '' if there are none."""
-    return '' if not count else (
-        f'not shown: {count_in_words(count, "warning")} about Gazebo; for all warnings, type '
-        '"sdf_pose check FILE", or "sdf_pose check -" for a text')
 
 
 def line_about_joints_at_rest(scene: Scene, model: str, frame_names: FrameNames) -> str:

@@ -20,9 +20,7 @@ from sdf_pose_bridge.problems import MOST_PROBLEMS
 from sdf_pose_bridge.ros import log_lines
 from sdf_pose_bridge.ros.log_lines import (
     line_about_detached_models,
-    line_about_gazebo,
     line_about_joints_at_rest,
-    line_about_prefix,
     line_from_text,
     lines_about_lost_frames,
     lines_about_scene,
@@ -65,7 +63,9 @@ def test_the_error_of_a_missing_include_names_the_parameter_that_leaves_it_out()
 @pytest.mark.parametrize(('prefix', 'asks'), [
     ('', False), ('robot1/', False), ('robot1_', False), ('robot1', True)])
 def test_a_prefix_that_runs_into_the_names_is_asked_about(prefix, asks):
-    assert line_about_prefix(prefix).endswith('; did you mean "robot1/"?') == asks
+    _, *lines = lines_about_scene(loaded_scene_from_request(LoadRequest(
+        '', model_file('<link name="l"/>'), tf_options=TfOptions(frame_prefix=prefix))))
+    assert any(line.endswith('; did you mean "robot1/"?') for line in lines) == asks
 
 
 @pytest.mark.parametrize(('lines', 'last'), [
@@ -272,5 +272,8 @@ def test_the_line_about_a_urdf_names_its_root_and_its_link_world():
 
 
 def test_warnings_for_gazebo_are_counted():
-    assert line_about_gazebo(7).startswith('not shown: 7 warnings about Gazebo; ')
-    assert line_about_gazebo(0) == ''
+    loaded = loaded_scene_from_request(LoadRequest('', model_file('<link name="l"/>')))
+    for count, shown in (0, 0), (1, 1), (7, 1):
+        lines = lines_about_scene(loaded._replace(gazebo_warning_count=count))
+        what = f'not shown: {count} warning{"s" if count > 1 else ""} about Gazebo; '
+        assert [line.startswith(what) for line in lines].count(True) == shown
