@@ -23,10 +23,7 @@ from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.inertials import AutomaticInertial, Inertial
 from sdf_pose_bridge.sdformat.joints import JointDetails
 from sdf_pose_bridge.sdformat.plugins import Plugin, SensorDetails
-from sdf_pose_bridge.sdformat.poses import (
-    pose_doubts,
-    poses_from_numbers,
-)
+from sdf_pose_bridge.sdformat.poses import pose_doubts, poses_from_numbers
 from sdf_pose_bridge.sdformat.shapes import Shape
 from sdf_pose_bridge.sdformat.xml_tree import path_step
 

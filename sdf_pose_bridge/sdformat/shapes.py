@@ -19,11 +19,7 @@ from sdf_pose_bridge.geometry.rotations import Floats, matrix_from_quaternion
 from sdf_pose_bridge.sdformat.grammar import ValueType
 from sdf_pose_bridge.sdformat.shape_types import Part, SHAPE_TYPES, Solid, Surface
 from sdf_pose_bridge.sdformat.sources import Sources
-from sdf_pose_bridge.sdformat.values import (
-    number_of_child,
-    numbers_from_text,
-    numbers_of,
-)
+from sdf_pose_bridge.sdformat.values import number_of_child, numbers_from_text, numbers_of
 from sdf_pose_bridge.sdformat.xml_tree import (
     attribute_of,
     child_at,

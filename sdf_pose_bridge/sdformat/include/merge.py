@@ -21,12 +21,7 @@ from sdf_pose_bridge.errors import MergeIncludeError
 from sdf_pose_bridge.geometry.pose_attributes import PoseTextError
 from sdf_pose_bridge.geometry.poses import Pose, pose_product
 from sdf_pose_bridge.names import MODEL_FRAME, PROXY_END, PROXY_START, WORLD_FRAME
-from sdf_pose_bridge.sdformat.grammar import (
-    Definition,
-    definition_of,
-    Kind,
-    PARTS_OF_MODEL,
-)
+from sdf_pose_bridge.sdformat.grammar import Definition, definition_of, Kind, PARTS_OF_MODEL
 from sdf_pose_bridge.sdformat.poses import pose_format_of, pose_from_text, text_from_pose
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import (
