@@ -88,9 +88,7 @@ def print_table(labels: Sequence[str], rows: Sequence[TableRow], remark: str = '
             print(styled(below + note, DIM, sys.stdout))
 
 
-def _laid_out(
-    labels: Sequence[str], rows: Sequence[TableRow], remark: str = '',
-) -> list[TableRow]:
+def _laid_out(labels: Sequence[str], rows: Sequence[TableRow], remark: str = '') -> list[TableRow]:
     """Return all rows with kinds of one width, and with one text for the values of each."""
     rows = TableRow('frame', 'kind', labels, remark=remark), *rows
     texts = [(_SHORT_KINDS.get(row.kind, row.kind) + '  ', *(row.values or ('',) * len(labels)))

@@ -102,9 +102,7 @@ def scene_of(path: str, options: argparse.Namespace, **parts: bool) -> Scene:
     return scene
 
 
-def doubts_about_frames(
-    scene: Scene, options: TfOptions | None = None,
-) -> tuple[SdfWarning, ...]:
+def doubts_about_frames(scene: Scene, options: TfOptions | None = None) -> tuple[SdfWarning, ...]:
     """Return the warnings about the frames that the node publishes, by default without options."""
     # An error of the tree is a warning, as with other parameters the tree may be valid.
     try:

@@ -269,9 +269,7 @@ class _Builder:
                    f'{quoted_names(names)}')
             self._problems.warning(msg, self._elements.place(indices[0]))
 
-    def _break_cycles(
-        self, pointers: Indices, error_class: type[SdfError], verb: str,
-    ) -> None:
+    def _break_cycles(self, pointers: Indices, error_class: type[SdfError], verb: str) -> None:
         """Report each cycle at its first element in the file, and clear its pointers."""
         is_of_poses = error_class is RelativeToCycleError
         for cycle in cycles_from_pointers(pointers):

@@ -96,8 +96,7 @@ class PoseText:
             raise PoseNotSetError(msg, Place(self._path))
         return line - 1
 
-    def joints_to_move(
-        self, name: str, *, is_included: bool) -> Iterator[tuple[int, RobotJoint]]:
+    def joints_to_move(self, name: str, *, is_included: bool) -> Iterator[tuple[int, RobotJoint]]:
         """Find joints as a ``Robot`` of URDF does, with the elements for :meth:`with_origin`."""
         root, sources = self.elements[0], Sources()
         sources.add_path(self._path)

@@ -90,8 +90,7 @@ def detached_bodies(
     return is_detached
 
 
-def _matching_models(
-    scene: Scene, patterns: tuple[str, ...], problems: Problems) -> set[int]:
+def _matching_models(scene: Scene, patterns: tuple[str, ...], problems: Problems) -> set[int]:
     """Return the top-level models whose names match a pattern."""
     models: list[int] = np.flatnonzero(
         (scene.kinds == Kind.MODEL) & (scene.parents == scene.roots)).tolist()

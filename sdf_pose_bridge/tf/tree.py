@@ -299,9 +299,7 @@ def _warn_of_loops(tf_parents: TfParents, scene: Scene, problems: Problems) -> N
         problems.warning(msg, scene.place(first.element))
 
 
-def _check_frame_ids(
-    frames: Frames, scene: Scene, root_frame: str, problems: Problems,
-) -> None:
+def _check_frame_ids(frames: Frames, scene: Scene, root_frame: str, problems: Problems) -> None:
     """Check that frame ids are unique and that TF accepts them."""
     owners = frames.owners.tolist()
     first = {root_frame: ROOT_IS_PARENT}
@@ -332,9 +330,7 @@ def _check_frame_ids(
         problems.error(DuplicateNameError(msg, scene.place(others[0])))
 
 
-def _names(
-    naming: FrameNaming, scene: Scene, elements: Indices, problems: Problems,
-) -> list[str]:
+def _names(naming: FrameNaming, scene: Scene, elements: Indices, problems: Problems) -> list[str]:
     """Make names; scoped ones for a model file in which a frame has the name of the model."""
     names = naming.names_from_scene(scene, elements)
     if naming.names is not FrameNames.AUTO or not names:

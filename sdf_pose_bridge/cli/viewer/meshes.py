@@ -233,9 +233,7 @@ def _names_of_parts(
         yield name or node.removesuffix(f'_{getattr(material, "name", None)}')
 
 
-def _parts(
-    scene: trimesh.Scene, names: Sequence[str], shape: Shape,
-) -> tuple[MeshPart, ...]:
+def _parts(scene: trimesh.Scene, names: Sequence[str], shape: Shape) -> tuple[MeshPart, ...]:
     surfaces, submesh = [], shape.submesh
     for node, part_name in zip(scene.graph.nodes_geometry, names, strict=True):
         matrix, name = scene.graph[node]

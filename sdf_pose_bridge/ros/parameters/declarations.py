@@ -112,8 +112,7 @@ def _choice(default: Choice, description: str) -> Declaration[Choice]:
         default.value, description, rule, setting, most_characters=rules.MOST_CHARACTERS)
 
 
-def _rate(
-    description: str, zero: str, highest: float, default: float = 0.0) -> Declaration[float]:
+def _rate(description: str, zero: str, highest: float, default: float = 0.0) -> Declaration[float]:
     """
     Declare a parameter whose values are rates in Hz.
 

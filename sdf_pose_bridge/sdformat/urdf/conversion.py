@@ -88,9 +88,7 @@ def sdf_from_urdf(
 
 class _Conversion:
 
-    def __init__(
-        self, root: XmlElement, robot: Robot, sources: Sources, *, for_ros: bool,
-    ) -> None:
+    def __init__(self, root: XmlElement, robot: Robot, sources: Sources, *, for_ros: bool) -> None:
         self._for_ros = for_ros
         self._root = root
         self._robot = robot
