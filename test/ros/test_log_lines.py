@@ -65,7 +65,8 @@ def test_the_error_of_a_missing_include_names_the_parameter_that_leaves_it_out()
 def test_a_prefix_that_runs_into_the_names_is_asked_about(prefix, asks):
     _, *lines = lines_about_scene(loaded_scene_from_request(LoadRequest(
         '', model_file('<link name="l"/>'), tf_options=TfOptions(frame_prefix=prefix))))
-    assert any(line.endswith('; did you mean "robot1/"?') for line in lines) == asks
+    asked = [line.partition('did you mean ')[2] for line in lines if 'did you mean' in line]
+    assert asked == ['"robot1/"?'] * asks
 
 
 @pytest.mark.parametrize(('lines', 'last'), [
@@ -273,7 +274,7 @@ def test_the_line_about_a_urdf_names_its_root_and_its_link_world():
 
 def test_warnings_for_gazebo_are_counted():
     loaded = loaded_scene_from_request(LoadRequest('', model_file('<link name="l"/>')))
-    for count, shown in (0, 0), (1, 1), (7, 1):
+    for count, shown in (0, []), (1, ['1 warning']), (7, ['7 warnings']):
         lines = lines_about_scene(loaded._replace(gazebo_warning_count=count))
-        what = f'not shown: {count} warning{"s" if count > 1 else ""} about Gazebo; '
-        assert [line.startswith(what) for line in lines].count(True) == shown
+        assert [line.partition(' about Gazebo')[0].removeprefix('not shown: ')
+                for line in lines if 'Gazebo' in line] == shown
