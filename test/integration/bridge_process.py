@@ -45,6 +45,9 @@ class LoggedProcess:
 
     def _read(self):
         for line in self._process.stdout:
+            # Fast DDS takes another port where a file of another user is in its place.
+            if 'Failed init_port' in line:
+                continue
             with self._has_changed:
                 self.lines.append(line.rstrip('\n'))
                 self._has_changed.notify_all()
