@@ -190,6 +190,8 @@
     const bytes = new Uint8Array(await crypto.subtle.digest('SHA-256', text));
     const digits = [...bytes].map(byte => byte.toString(16).padStart(2, '0')).join('');
     const address = `/${digits.slice(0, 32)}/`;
+    // The program that ends may still answer.
+    if (address === location.pathname) return;
     if ((await fetch(address)).ok && hasEnded) location.replace(address);
   };
   setInterval(() => { if (hasEnded && !document.hidden) follow().catch(() => {}); }, 500);
