@@ -77,7 +77,7 @@ test: setup
 # Tests that need no ROS and wait for no other process, so more processes than cores would not help.
 test_core: setup
 	@$(in_shell) python -m pytest --numprocesses $$(nproc) --dist worksteal \
-	  test/geometry test/sdformat test/scene test/tf $(ARGS)
+	  test/geometry test/sdformat test/scene test/tf test/export $(ARGS)
 
 # One after the other, as each of them loads the machine.
 test_long: setup

@@ -31,6 +31,14 @@ def test_every_module_has_its_test_module_or_is_tested_as_a_whole():
     assert without == TESTED_AS_A_WHOLE.keys()
 
 
+@pytest.mark.parametrize(('file', 'others'), [
+    ('.ci/run', {'ros'}), ('Makefile', {'ros', 'cli'})], ids=['oldest versions', 'test_core'])
+def test_all_rooms_are_in_a_run_without_ros(file, others):
+    run, = re.findall(r'^\s*(test/geometry .*)', (ROOT / file).read_text(), re.M)
+    rooms = {module.parts[0] for module in MODULES if len(module.parts) > 1}
+    assert {*re.findall(r'test/(\w+)', run)} == rooms - others
+
+
 @pytest.mark.parametrize('module', TESTED_AS_A_WHOLE)
 def test_tests_of_whole_programs_exist(module):
     assert all((TESTS / name).exists() for name in TESTED_AS_A_WHOLE[module])
