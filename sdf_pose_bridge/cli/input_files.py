@@ -55,7 +55,7 @@ def loader(path: str, options: argparse.Namespace, **parts: Any) -> partial[Scen
 
 @contextlib.contextmanager
 def told_on_terminal(path: str, terminal: int = 2) -> Iterator[None]:
-    """Tell on a terminal, by its descriptor, how much was read so far, from the second second."""
+    """Tell on a terminal, by its descriptor, how much was read, after the first second."""
     if not os.isatty(terminal):
         yield
         return

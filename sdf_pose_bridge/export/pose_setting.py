@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Find the change of a file that moves an element to a pose, and write that of a frame of the node.
+Find the change of a file that moves an element to a pose, and write it for a frame of TF.
 
 No rule of SDFormat is implemented here: the scene has the ``<pose>`` that places the element and
 its reference, and the new numbers are checked by reading the changed file. In URDF it is the

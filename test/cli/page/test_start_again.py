@@ -62,11 +62,13 @@ def test_tab_shows_the_file_that_is_served_again(tab, tmp_path, port):
 
 
 @contextlib.contextmanager
-def other_program(port):
-    """Answer any request at a port, as servers of many web applications do."""
+def other_program(port, salt=''):
+    """Answer any request at a port, as servers of many web applications do; or first a salt."""
     class Handler(BaseHTTPRequestHandler):
         def do_GET(self):
-            self.send_response(HTTPStatus.OK)
+            is_refused = salt and self.path == '/'
+            self.send_response(HTTPStatus.FORBIDDEN if is_refused else HTTPStatus.OK)
+            self.send_header('Salt', salt)
             self.end_headers()
 
         def log_message(self, *_):
@@ -82,26 +84,29 @@ def other_program(port):
             thread.join()
 
 
-def view_of_other_file(port, tmp_path):
+def view_of_other_file(port, tmp_path, _):
     (tmp_path / 'other').mkdir()
     (tmp_path / 'other/cell.sdf').write_text(TEXT)
     return view_of(tmp_path / 'other', '--port', port)
 
 
 @pytest.mark.parametrize(('other', 'answers'), [
-    (view_of_other_file, ['403', '403']), (lambda port, _: other_program(port), ['200', '200'])])
+    (view_of_other_file, ['403', '403']), (lambda port, *_: other_program(port), ['200', '200']),
+    # The program that ends may answer once more.
+    (lambda port, _, salt: other_program(port, salt), ['403', '403'])])
 def test_tab_stays_where_something_else_is_served(tab, tmp_path, port, other, answers):
     (tmp_path / 'cell.sdf').write_text(TEXT)
     with view_of(tmp_path, '--port', port) as address:
         tab.open(address)
         tab.wait_for(f'{ROWS}.length === 5')
+        salt = tab.run("fetch('/').then(answer => answer.headers.get('Salt'))")
     tab.run("""{ const fetched = window.fetch; window.answers = [];
       window.fetch = async (...given) => {
         const answer = await fetched(...given);
         answers.push(String(answer.status));
         return answer;
       }; }""")
-    with other(port, tmp_path):
+    with other(port, tmp_path, salt):
         tab.wait_for('window.answers?.length >= 2')
         assert tab.run('answers.slice(0, 2)') == answers
         assert tab.run('location.href').startswith(address)
