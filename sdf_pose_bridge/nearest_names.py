@@ -42,7 +42,7 @@ class NameIndex:
         self._reversed_names = sorted((name[::-1] for name in short), key=_sort_key)
 
     def nearest(self, wanted: str) -> str:
-        """Return the nearest name; an empty string if none is near."""
+        """Return the nearest other name; an empty string if none is near."""
         if len(wanted) > _LONGEST_COMPARED:
             return ''
         likely = [*_neighbors(self._names, wanted), *(
@@ -52,7 +52,7 @@ class NameIndex:
         stem, dot, ending = wanted.rpartition('.')
         is_far = near and dot and near[0].endswith(dot + ending) and not (
             difflib.get_close_matches(stem, [near[0].removesuffix(dot + ending)]))
-        return near[0] if near and not is_far else ''
+        return near[0] if near and not is_far and near[0] != wanted else ''
 
     def hint(self, wanted: str) -> str:
         """Return the end of a message about a name that was not found."""

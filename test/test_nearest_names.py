@@ -13,7 +13,7 @@ from sdf_pose_bridge.nearest_names import hint_from_names, NameIndex
 @pytest.mark.parametrize(('wanted', 'names', 'hint'), [
     ('table', [], ''),
     ('table', ['x'], ''),
-    ('', ['x'], ''),
+    ('', ['x'], ''), ('table', ['table', 'chair'], ''),
     ('tabel', ['chair', 'table'], '; did you mean "table"?'),
     # An ending that many files have says nothing.
     ('nothing.sdf', ['g.sdf'], ''), ('cel.sdf', ['cell.sdf'], '; did you mean "cell.sdf"?'),

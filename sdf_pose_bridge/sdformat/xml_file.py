@@ -34,7 +34,7 @@ from sdf_pose_bridge.errors import (
 from sdf_pose_bridge.nearest_names import hint_from_names
 from sdf_pose_bridge.process_limits import raise_limits
 from sdf_pose_bridge.sdformat.limits import Usage
-from sdf_pose_bridge.sdformat.templates import hint_about_template
+from sdf_pose_bridge.sdformat.templates import hint_about_missing_file, hint_about_template
 from sdf_pose_bridge.sdformat.xml_text import before_zero_byte, repaired, text_from_bytes
 from sdf_pose_bridge.sdformat.xml_tree import is_foreign, WHITE_SPACE, XmlElement
 
@@ -166,7 +166,8 @@ def _cure(path: str) -> str:
     if worlds and not folder:
         return f'; Gazebo has it as "{worlds[-1]}"'
     try:
-        return hint_from_names(name, os.listdir(folder or '.'))  # noqa: PTH208
+        return '' if os.path.lexists(path) else hint_about_missing_file(path) or (
+            hint_from_names(name, os.listdir(folder or '.')))  # noqa: PTH208
     except (OSError, ValueError):
         return ''
 

@@ -57,11 +57,16 @@ def test_a_text_instead_of_a_path_is_told():
 @pytest.mark.parametrize(('path', 'reason'), [
     ('cel.sdf', r'; did you mean "cell\.sdf"\?$'), ('a.dae', '"git lfs pull" fetches its content'),
     ('pipe', 'not a regular file'), ('/dev/null', 'not a regular file'), ('/', '.'),
-    ('/dev/zero', 'robot_description'), ('nothing.sdf', 'No such file or directory$')])
+    ('/dev/zero', 'robot_description'), ('nothing.sdf', 'No such file or directory$'),
+    ('dangling.sdf', 'No such file or directory$'), ('loop.sdf', 'symbolic links$'),
+    ('arm.sdf', 'Jinja makes it of "arm.sdf.jinja" beside it$')])
 def test_only_regular_files_with_content_are_read(tmp_path, path, reason):
     (tmp_path / 'cell.sdf').touch()
     (tmp_path / 'a.dae').write_text('version https://git-lfs.github.com/spec/v1\noid sha256:0\n')
     os.mkfifo(tmp_path / 'pipe')
+    (tmp_path / 'arm.sdf.jinja').touch()
+    (tmp_path / 'dangling.sdf').symlink_to('no.sdf')
+    (tmp_path / 'loop.sdf').symlink_to('loop.sdf')
     with pytest.raises(FileReadError, match=reason):
         bytes_from_file(str(tmp_path / path), Usage())
 
