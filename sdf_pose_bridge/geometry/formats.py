@@ -143,6 +143,7 @@ class Format(NamedTuple):
             rows[:, self.last_row] = LAST_ROW[:len(self.last_row)]
         return rows
 
+    @np.errstate(all='ignore')  # what overflows is neither round nor of unit length
     def doubt(
         self, values: Sequence[float] | Floats, *, is_written: bool = False, dashes: str = '',
     ) -> str:
@@ -220,8 +221,7 @@ def format_from_name(
     :param all_names: the place of the list of formats, for the message.
     :raises PoseFormatError: if there is none; the message has the nearest names.
     """
-    names = {
-        synonym: each for each in formats.values() for synonym in (each.name, *each.synonyms)}
+    names = {synonym: each for each in formats.values() for synonym in (each.name, *each.synonyms)}
     if str(name) in names:
         return names[str(name)]
     if _SEQUENCE.fullmatch(axes := str(name).lower()):
@@ -251,6 +251,7 @@ def _nearest(wanted: str, names: Mapping[str, Format]) -> str:
     return f'{word}: {", ".join([*shown.values()][:_MOST_NAMES])}; ' if shown else ''
 
 
+@np.errstate(over='ignore')  # numbers that overflow are an error
 def _converted(
     values: object,
     from_format: str | Format,
@@ -276,8 +277,7 @@ def _converted(
         message = str(error).removeprefix('row 0: ' if len(rows) == 1 else '')
         msg = f'{source.name}: {message}'
         raise PoseFormatError(msg) from error
-    with np.errstate(over='ignore'):
-        result = target.rows_from_common(common)
+    result = target.rows_from_common(common)
     if source.sequence is not None and source.sequence is target.sequence:
         # Rounding must not change angles that are already canonical.
         angles = rows[:, source.columns]

@@ -3,6 +3,7 @@
 """Formats of poses: invalid input, what each format means, conversions between all of them."""
 
 import array
+import contextlib
 import itertools
 import math
 import re
@@ -215,10 +216,20 @@ def test_every_format_converts_to_every_other_and_back(source, target):
     assert largest_angle(common[:, 3:], common_again[:, 3:]) <= 8 * MAX_ANGLE
 
 
-@pytest.mark.filterwarnings('error')
-def test_largest_angles_are_wrapped_without_a_warning():
+def test_largest_angles_are_wrapped():
     row = (0.0, 0.0, 0.0, 1e308, 0.0, 0.0)
     assert abs(converted_poses(row, 'sdf_rpy', 'sdf_rpy_degrees')[3]) < 180.0
+
+
+@pytest.mark.filterwarnings('error')
+@every_format
+@pytest.mark.parametrize('number', [1e308, -1.7e308, 5e-324])
+def test_numbers_at_the_ends_of_the_range_cause_no_warning_of_numpy(name, number):
+    row = [number] * LENGTHS[name]
+    for target in (name, 'sdf_rpy', 'franka_matrix', 'franka_measured'):
+        with contextlib.suppress(PoseFormatError):  # a matrix is none, or the result is too large
+            assert np.isfinite(converted_poses(row, name, target)).all()
+    assert isinstance(POSE_FORMATS[name].doubt(row, is_written=True), str)
 
 
 @every_format
