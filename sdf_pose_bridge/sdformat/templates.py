@@ -19,10 +19,11 @@ from sdf_pose_bridge.sdformat.source_formats import SourceFormat
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import text_of, written_tag, XmlElement
 
-_EXPANDED_PARTS = etree.XPath(
-    'descendant-or-self::*[not(ancestor-or-self::*[name()="plugin" or name()="xacro:arg" or '
-    'name()="xacro:property"])]')
-"""The elements in which xacro leaves no expression that would change a frame."""
+_WITHOUT_FRAMES = (
+    'plugin', 'ros2_control', 'script', 'transmission', 'xacro:arg', 'xacro:property')
+_EXPANDED_PARTS = etree.XPath('descendant-or-self::*[not(ancestor-or-self::*[{}])]'.format(
+    ' or '.join(f'name()="{tag}"' for tag in _WITHOUT_FRAMES)))
+"""The elements in which an expression that is not expanded would change a frame."""
 _XACRO_EXPRESSION = re.compile(r'\$[({]')
 _LOCATIONS = ('uri', 'filename', '_map')
 """Ends of tags whose text is a location on which no frame depends, except in an include."""
@@ -127,8 +128,9 @@ def _refuse_xacro(root: XmlElement, path: str, sources: Sources) -> None:
     Refuse a file that xacro has not expanded yet.
 
     Otherwise it would be read with another meaning: macros are not called, and the content of
-    ``<xacro:if>`` is left out. Only declarations, and expressions in plugins, names of topics and
-    locations of meshes, change no frame; the first one causes a warning.
+    ``<xacro:if>`` is left out. Only declarations, and expressions in plugins, in what is for
+    ros2_control, in scripts, names of topics and locations of meshes, change no frame; the first
+    one causes a warning.
     """
     name = Path(path).name
     is_xacro, is_sdf = name.endswith('.xacro'), root.tag == SourceFormat.SDFORMAT.tag

@@ -83,6 +83,20 @@ def test_declarations_plugins_and_topics_may_stay():
         'no frame depends on it, but names in Gazebo may')
 
 
+@pytest.mark.parametrize(('text', 'found'), [
+    (urdf(link('a') + '<ros2_control name="c" type="system"><joint name="j"><command_interface '
+          'name="position"><param name="min">${-2*pi}</param></command_interface></joint>'
+          '</ros2_control>'), '"${-2*pi}" in <param>'),
+    (urdf(link('a') + '<transmission name="${t}"><type>x</type></transmission>'),
+     'name="${t}" of <transmission>'),
+    (sdf('<link name="a"><visual name="v"><geometry><sphere/></geometry><material><script>'
+         '<uri>file://media</uri><name>Gazebo/$(arg color)</name></script></material></visual>'
+         '</link>'), '"Gazebo/$(arg color)" in <name>')])
+def test_what_is_read_for_no_frame_may_stay(text, found):
+    (warning, *_) = load_text(text).warnings
+    assert warning.message.startswith(f'{found} is for xacro or launch files')
+
+
 MESH = ('<link name="l"><visual name="v"><geometry><mesh><uri>$(find arm)/arm.dae</uri></mesh>'
         '</geometry></visual></link>')
 
