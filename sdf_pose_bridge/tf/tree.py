@@ -304,6 +304,7 @@ def _check_frame_ids(frames: Frames, scene: Scene, root_frame: str, problems: Pr
     owners = frames.owners.tolist()
     first = {root_frame: ROOT_IS_PARENT}
     clashes: dict[int, list[int]] = {}
+    spaced: list[str] = []
     for index, frame_id in enumerate(frames.ids):
         other = first.setdefault(frame_id, index)
         if other == index and frame_id.split() == [frame_id]:
@@ -320,8 +321,10 @@ def _check_frame_ids(frames: Frames, scene: Scene, root_frame: str, problems: Pr
         elif other != index:
             clashes.setdefault(other, []).append(owner)
         else:
-            msg = f'the frame id "{frame_id}" contains white space, which some tools reject'
-            problems.warning(msg, scene.place(owner))
+            spaced.append(frame_id)
+    if spaced:
+        msg = f'white space, which some tools reject, is in the frame ids {quoted_names(spaced)}'
+        problems.warning(msg, scene.place(owners[first[spaced[0]]]))
     for index, others in clashes.items():
         owner, count = owners[index], len(others) - 1
         msg = (f'{_description(scene, others[0])} and {_description(scene, owner)} (line '
