@@ -122,8 +122,7 @@ class Problems:
                     f'{error.message}{self._included_from(error.file)}', error.place)
             seen.add(error.file)
         if self._errors.more:
-            errors.append(SdfError(
-                f'and {self._errors.more} more errors', Place(self._paths[0])))
+            errors.append(SdfError(f'and {self._errors.more} more errors', Place(self._paths[0])))
         return tuple(errors)
 
     @property

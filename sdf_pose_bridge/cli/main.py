@@ -139,13 +139,11 @@ def new_parser() -> argparse.ArgumentParser:
         prog='sdf_pose',
         description='Poses and frames of SDFormat files, exactly as libsdformat resolves them.')
     # The short name also makes the column of names wide enough for those of all commands.
-    parser.add_argument(
-        '-V', '--version', action='store_true', help='show the version and exit')
+    parser.add_argument('-V', '--version', action='store_true', help='show the version and exit')
     subparsers = parser.add_subparsers(dest='command', metavar='COMMAND', title='commands')
     for command in (check, poses, tree, graph, view, urdf, gz_bridge, convert, diff, set_command):
         name = command.__name__.rpartition('.')[2]
-        subparser = subparsers.add_parser(
-            name, help=command.HELP, description=command.DESCRIPTION)
+        subparser = subparsers.add_parser(name, help=command.HELP, description=command.DESCRIPTION)
         command.add_arguments(subparser)
         subparser.set_defaults(run=command.run)
     if '_ARGCOMPLETE' in os.environ:

@@ -182,8 +182,7 @@ class _Search:
             if each.format not in tables.TEXTS
             for name in (*each.names, each.names[0].partition('.')[0]) if name in group)
         if not others:
-            rotation = rotation or (
-                _ZEROS if may_be_missing or part.names[0] == '@pos' else None)
+            rotation = rotation or (_ZEROS if may_be_missing or part.names[0] == '@pos' else None)
             position = position or (_ZEROS if may_be_missing else None)
         if position and rotation:
             self._read_parts(path, position, rotation)

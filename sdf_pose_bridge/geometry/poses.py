@@ -98,8 +98,7 @@ def canonical_relative_pose(reference: Pose, pose: Pose) -> Pose:
 def distance_and_angle(a: Pose, b: Pose) -> tuple[float, float]:
     """Return the distance of two poses in metres, and their angle in radians."""
     between = relative_pose(a, b)
-    return (
-        math.hypot(*between[:3]), 2.0 * math.atan2(math.hypot(*between[3:6]), abs(between.qw)))
+    return (math.hypot(*between[:3]), 2.0 * math.atan2(math.hypot(*between[3:6]), abs(between.qw)))
 
 
 def pose_products(a: PoseArray, b: PoseArray) -> PoseArray:
@@ -165,8 +164,7 @@ class ScrewMotions:
         # and of its half.
         self._factors = np.zeros((len(axes), 6, 7))
         self._factors[:, 0, :3] = transformed_points(before, points + along)
-        self._factors[:, 1, :3] = transformed_points(
-            rotations, m_per_unit[:, np.newaxis] * axes)
+        self._factors[:, 1, :3] = transformed_points(rotations, m_per_unit[:, np.newaxis] * axes)
         self._factors[:, 2, :3] = transformed_points(rotations, normal)
         self._factors[:, 3, 3:] = pose_products(before, after)[:, 3:]
         self._factors[:, 4, :3] = transformed_points(rotations, np.cross(axes, normal))

@@ -79,8 +79,7 @@ def messages_from_poses(
             pose = Pose(x, y, z, *canonical_quaternion(quat))
             if odometry:
                 pose = pose_product(odometry.pose, pose_product(pose, odometry.model))
-            placed = odometry.nested_model if odometry else (
-                placements or {}).get(model, placed)
+            placed = odometry.nested_model if odometry else (placements or {}).get(model, placed)
             groups.setdefault(_Group(stamp_ns, found[0], placed, found[1]), {})[model] = pose
     models = {model for group in groups.values() for model in group}
     # The pose of the model may come in another message.

@@ -203,8 +203,7 @@ class Simulator(StateSource):
 
     def _period_s(self, count: int) -> float:
         """Return the shortest period of calls after an answer about a number of entities."""
-        self._costs_s.append(
-            time.thread_time() - self._begin_of_cost_s + self._cost_of_poses_s)
+        self._costs_s.append(time.thread_time() - self._begin_of_cost_s + self._cost_of_poses_s)
         cost_s, rate_hz = min(self._costs_s), self._settings.simulator_rate
         period_s = cost_s / LARGEST_SHARE
         if len(self._costs_s) == _COSTS and period_s * rate_hz > 1.5:

@@ -69,8 +69,7 @@ class WaitSet:
             wait_set.add_subscription(subscription.handle)
         wait_set.wait(_FOREVER if math.isinf(timeout_s) else int(timeout_s * NANOSECONDS))
         ready = set(wait_set.get_ready_entities('subscription'))
-        return [
-            index for index, each in enumerate(subscriptions) if each.handle.pointer in ready]
+        return [index for index, each in enumerate(subscriptions) if each.handle.pointer in ready]
 
     def close(self) -> None:
         """Destroy it. Subscriptions that were destroyed before are released."""
