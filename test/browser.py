@@ -30,6 +30,9 @@ WebGL2RenderingContext.prototype.drawElements = () => {};"""
 """Ten frames a second at most, and only what has instances, as bodies and axes: without a graphics
 card, more frames would take a whole core, and the background is most of a frame."""
 
+REPLACED = 'Inspected target navigated or closed'
+"""The error of what is asked while another page takes the place of this one."""
+
 
 class Tab:
     """A tab of a browser; ``requests`` has the address of everything that it asked for."""
@@ -40,6 +43,8 @@ class Tab:
         self.requests, self.errors = [], []
         for domain in ('Page', 'Network', 'Runtime'):
             self.call(f'{domain}.enable')
+        # It is drawn, also where another tab is in front of it.
+        self.call('Emulation.setFocusEmulationEnabled', enabled=True)
         self.call('Page.addScriptToEvaluateOnNewDocument', source=FEW_FRAMES)
 
     def call(self, method, **parameters):
@@ -48,6 +53,8 @@ class Tab:
         while True:
             message = json.loads(self._socket.recv(timeout=DEADLINE_S))
             if message.get('id') == number:
+                if message.get('error', {}).get('message') == REPLACED:
+                    return self.call(method, **parameters)
                 assert 'error' not in message, message
                 return message['result']
             if message.get('method') == 'Network.requestWillBeSent':
@@ -59,8 +66,8 @@ class Tab:
 
     @contextlib.contextmanager
     def other(self):
-        """Open another tab in a window of its own, where both are drawn."""
-        tab = self.call('Target.createTarget', url='about:blank', newWindow=True)['targetId']
+        """Open another tab."""
+        tab = self.call('Target.createTarget', url='about:blank')['targetId']
         with _tab(self._browser, tab) as other:
             yield other
             other.call('Target.closeTarget', targetId=tab)

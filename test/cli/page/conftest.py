@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """A page that tests use one after the other."""
 
+import json
 from types import SimpleNamespace
 
 from browser import browser
 import needs
 import pytest
 from shown_page import (
+    control,
     HOSTILE,
     ROWS,
     SCENES,
@@ -15,6 +17,8 @@ from shown_page import (
     TEXT,
     view_of,
 )
+
+NAMES = "document.querySelector('[data-names]').dataset.names"
 
 
 @pytest.fixture(scope='session')
@@ -30,20 +34,16 @@ def shown(tmp_path_factory):
         page.call('Page.addScriptToEvaluateOnNewDocument', source=SCENES)
         page.open(address)
         page.wait_for(f'{ROWS}.length > 0')
-        yield SimpleNamespace(
-            file=file, page=page, address=address, written_ns=file.stat().st_mtime_ns)
+        yield SimpleNamespace(file=file, page=page, address=address, names=page.run(NAMES))
 
 
 @pytest.fixture
 def page(shown):
     """The page of the file as it was at first."""
-    if shown.file.stat().st_mtime_ns != shown.written_ns:
-        # Not all that tests write, and then undo, is seen in the tree; this is.
-        shown.file.write_text(TEXT.replace('</world>', '<frame name="one more"/></world>'))
-        shown.page.wait_for(f'{ROWS}.length === 6')
+    if shown.file.read_text() != TEXT:
         shown.file.write_text(TEXT)
-        shown.written_ns = shown.file.stat().st_mtime_ns
-    shown.page.wait_for(f"{ROWS}.length === 5 && !document.querySelector('.errors')")
+    shown.page.wait_for(f"{NAMES} === {json.dumps(shown.names)} && {control('rail')}"
+                        f" && {ROWS}.length === 5 && !document.querySelector('.errors')")
     # A frame that the last test has moved is back only when the file has been read again.
     select(shown.page, HOSTILE)
     shown.page.wait_for("document.body.innerText.includes('xyz 1.0000 0.0000 0.0000 m')")

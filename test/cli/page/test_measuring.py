@@ -5,7 +5,7 @@
 import re
 
 import pytest
-from shown_page import control, HOSTILE, LABELS, point_on_screen, ROWS, select, wait_for_name_at
+from shown_page import control, HOSTILE, LABELS, point_on_screen, select, wait_for_name_at
 
 POINTS = (0.1, 0.05, -0.05), (-0.05, -0.1, -0.05)
 """Points on two faces of the box."""
@@ -13,35 +13,36 @@ STRIP = "document.querySelector('.strip').innerText"
 SELECTED = "document.querySelector('.rows .selected')?.textContent"
 
 
-def click(tab, point):
-    tab.mouse(point_on_screen(tab, point))
+def click(page, point):
+    page.mouse(point_on_screen(page, point))
 
 
-def test_points_are_clicked_until_escape(page, tab, shown):
-    tab.size(1366, 768)
-    tab.open(shown.address)
-    tab.wait_for(f'{ROWS}.length === 5')
-    wait_for_name_at(tab, *point_on_screen(tab, POINTS[0]), 'arm/base, visual v')
-    click(tab, POINTS[0])
-    tab.wait_for(f"{SELECTED} === 'base'")
-    select(tab, HOSTILE)
+def test_points_are_clicked_until_escape(page):
+    wait_for_name_at(page, *point_on_screen(page, POINTS[0]), 'arm/base, visual v')
+    click(page, POINTS[0])
+    page.wait_for(f"{SELECTED} === 'base'")
+    select(page, HOSTILE)
     switch = control('measure points')
-    tab.run(f'{switch}.click()')
+    page.run(f'{switch}.click()')
     for point in POINTS:
-        tab.wait_for(f"{STRIP}.includes('point {1 + POINTS.index(point)} of 2')")
-        click(tab, point)
-    tab.wait_for(f"{STRIP}.includes('from point 1 to 2')")
+        page.wait_for(f"{STRIP}.includes('point {1 + POINTS.index(point)} of 2')")
+        click(page, point)
+    page.wait_for(f"{STRIP}.includes('from point 1 to 2')")
     distance, *xyz = re.search(
-        r'^(\S+) m from point 1 to 2, xyz (\S+) (\S+) (\S+) in world', tab.run(STRIP)).groups()
+        r'^(\S+) m from point 1 to 2, xyz (\S+) (\S+) (\S+) in world', page.run(STRIP)).groups()
     # A pixel is 2 mm wide.
     assert [*map(float, xyz)] == pytest.approx((-0.15, -0.15, 0.0), abs=0.005)
-    tab.wait_for(f"{LABELS}.some(label => label.innerText === '{distance} m')")
+    page.wait_for(f"{LABELS}.some(label => label.innerText === '{distance} m')")
     # A drag turns the camera, and is no click.
-    x, y = point_on_screen(tab, POINTS[0])
-    tab.mouse((x, y), (x + 20, y))
-    tab.run(f"{control('names of frames')}.click()")
-    tab.wait_for(f"{LABELS}.some(label => label.innerText.includes('base'))")
-    assert tab.run(STRIP).startswith(f'{distance} m')
-    assert tab.run(SELECTED) == HOSTILE
-    tab.keys('Escape')
-    tab.wait_for(f"!{switch}.checked && !{STRIP}.includes('point')")
+    x, y = point_on_screen(page, POINTS[0])
+    page.mouse((x, y), (x + 20, y))
+    page.run(f"{control('names of frames')}.click()")
+    page.wait_for(f"{LABELS}.some(label => label.innerText.includes('base'))")
+    assert page.run(STRIP).startswith(f'{distance} m')
+    assert page.run(SELECTED) == HOSTILE
+    page.keys('Escape')
+    page.wait_for(f"!{switch}.checked && !{STRIP}.includes('point')")
+    page.run(f"{control('names of frames')}.click()")
+    home = "[...document.querySelectorAll('button')].find(each => each.innerText === 'home')"
+    page.run(f'{home}.click()')
+    wait_for_name_at(page, *point_on_screen(page, POINTS[0]), 'arm/base, visual v')
