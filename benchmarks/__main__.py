@@ -32,6 +32,7 @@ def main() -> int:
     if not chosen:
         print(f'no benchmark has {only!r} in its description', file=sys.stderr)
         return 2
+    os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
     results = []
     # None shall find the memory as another has left it.
     spawning = multiprocessing.get_context('spawn')

@@ -11,22 +11,17 @@ from pathlib import Path
 import re
 import subprocess
 import tempfile
-import threading
 import time
 
-from benchmarks.bench_idle import processor_time_ns
 from benchmarks.bench_joints import chain_text, joint_states
-from benchmarks.bench_reload import RunningBridge
 from benchmarks.harness import (
-    AtMostAsMuch,
     AtMostTimes,
     benchmark,
     Function,
     Held,
-    Took,
-    Unavailable,
     wait_until,
 )
+from benchmarks.processes import own_node, program_of, repeated, RunningBridge, shares_of
 import sdf_pose_bridge
 
 ROBOTS = 30
@@ -38,15 +33,8 @@ WINDOW_S = 4.0
 @contextlib.contextmanager
 def running_fleet() -> Iterator[tuple[subprocess.Popen[str], list[subprocess.Popen[str]]]]:
     """Start the bridge, and a robot_state_publisher for each robot, with the same messages."""
-    from ament_index_python.packages import get_package_prefix
-    import rclpy
-    from rclpy.context import Context
     from sensor_msgs.msg import JointState
-    try:
-        prefix = Path(get_package_prefix('robot_state_publisher'))
-    except LookupError:
-        msg = 'robot_state_publisher is not installed'
-        raise Unavailable(msg) from None
+    publisher_of_robot = program_of('robot_state_publisher', 'robot_state_publisher')
     names = [f'robot{number}' for number in range(1, ROBOTS + 1)]
     with contextlib.ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
@@ -63,33 +51,22 @@ def running_fleet() -> Iterator[tuple[subprocess.Popen[str], list[subprocess.Pop
             stack, world, 'use_joint_states:=true', 'watch:=false', 'publish_frequency:=20.0')
         others = [
             bridge.start(
-                stack, prefix / 'lib/robot_state_publisher/robot_state_publisher', urdf,
-                '--ros-args', '-r', f'__ns:=/{name}', '-r', 'tf:=/tf', '-p',
-                f'frame_prefix:={name}/', stderr=subprocess.DEVNULL)
+                stack, publisher_of_robot, urdf, '--ros-args', '-r', f'__ns:=/{name}', '-r',
+                'tf:=/tf', '-p', f'frame_prefix:={name}/', stderr=subprocess.DEVNULL)
             for name in names]
-        context = Context()
-        rclpy.init(args=[], context=context, domain_id=bridge.domain)
-        stack.callback(context.shutdown)
-        node = rclpy.create_node('joints', context=context)
+        node = stack.enter_context(own_node(bridge.domain))
         publishers = [
             node.create_publisher(JointState, f'{name}/joint_states', 10) for name in names]
         wait_until(
             lambda: all(each.get_subscription_count() >= 2 for each in publishers),
             'the nodes did not subscribe to all joint states')
-        has_ended = threading.Event()
-        stack.callback(has_ended.set)
+        pairs = zip(itertools.cycle(publishers), joint_states(JOINTS), strict=False)
 
         def publish() -> None:
-            due = time.perf_counter()
-            pairs = zip(itertools.cycle(publishers), joint_states(JOINTS), strict=False)
-            for publisher, message in pairs:
-                if has_ended.is_set():
-                    return
-                publisher.publish(message)
-                due += 1.0 / (RATE_HZ * ROBOTS)
-                time.sleep(max(0.0, due - time.perf_counter()))
+            publisher, message = next(pairs)
+            publisher.publish(message)
 
-        threading.Thread(target=publish, daemon=True).start()
+        stack.enter_context(repeated(publish, RATE_HZ * ROBOTS))
         yield bridge.process, others
 
 
@@ -98,23 +75,12 @@ def running_fleet() -> Iterator[tuple[subprocess.Popen[str], list[subprocess.Pop
     'second', counterpart='a robot_state_publisher for each', goal=AtMostTimes(1.0))
 def share_of_fleet() -> Iterator[tuple[Function, Function | None]]:
     with running_fleet() as (bridge, others):
-        last: list[float] = []
-
-        def shares() -> Took:
-            before = [processor_time_ns(each) for each in (bridge, *others)]
-            begin = time.perf_counter_ns()
-            time.sleep(WINDOW_S)
-            window = time.perf_counter_ns() - begin
-            last[:] = [
-                (processor_time_ns(each) - first) / window
-                for each, first in zip((bridge, *others), before, strict=True)]
-            return Took(last[0])
-        yield shares, lambda: Took(sum(last[1:]))
+        yield shares_of((bridge, *others), lambda: time.sleep(WINDOW_S))
 
 
 @benchmark(
     f'{ROBOTS} robots of {JOINTS} joints, memory of the node',
-    counterpart='a robot_state_publisher for each', goal=AtMostAsMuch(0.2))
+    counterpart='a robot_state_publisher for each', goal=AtMostTimes(0.2, 'memory'))
 def memory_of_fleet() -> Iterator[tuple[Function, Function | None]]:
     with running_fleet() as (bridge, others):
         yield (

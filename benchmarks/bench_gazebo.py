@@ -12,8 +12,8 @@ import random
 import subprocess
 import tempfile
 
-from benchmarks.bench_idle import processor_time_ns
-from benchmarks.harness import AtMostTimes, benchmark, DOMAINS, Function, Took, Unavailable
+from benchmarks.harness import AtMostTimes, benchmark, DOMAINS, Function, Unavailable
+from benchmarks.processes import program_of, shares_of
 
 ROBOTS = 30
 WINDOW_S = 3.0
@@ -23,7 +23,6 @@ WINDOW_S = 3.0
     f'{ROBOTS} robots with two wheels and true odometry, processor time in each second of '
     'simulated time', counterpart='Gazebo', goal=AtMostTimes(1.0))
 def share_of_robots_in_gazebo() -> Iterator[tuple[Function, Function | None]]:
-    from ament_index_python.packages import get_package_prefix
     from gazebo import environment_of_gazebo, FOLDER, Gazebo, gazebo_world
     from listener import Listener
     from test_gazebo import PLACES
@@ -31,7 +30,7 @@ def share_of_robots_in_gazebo() -> Iterator[tuple[Function, Function | None]]:
         msg = f'there is no Gazebo in {FOLDER}'
         raise Unavailable(msg)
     domain = random.choice(DOMAINS)
-    os.environ.update(ROS_DOMAIN_ID=str(domain), ROS_AUTOMATIC_DISCOVERY_RANGE='LOCALHOST')
+    os.environ['ROS_DOMAIN_ID'] = str(domain)
     with contextlib.ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         os.environ.update(environment_of_gazebo(folder))
@@ -45,20 +44,15 @@ def share_of_robots_in_gazebo() -> Iterator[tuple[Function, Function | None]]:
         gazebo = Gazebo(world, listener)
         stack.callback(gazebo.end)
         bridge = stack.enter_context(subprocess.Popen([
-            Path(get_package_prefix('sdf_pose_bridge'), 'lib/sdf_pose_bridge/bridge'),
+            program_of('sdf_pose_bridge', 'bridge'),
             '--ros-args', '--params-file', gazebo.node_file]))
         stack.callback(bridge.terminate)
         gazebo.wait(lambda: len(gazebo.stamps) == 3 * ROBOTS, 'all robots in TF')
-        processes = bridge, gazebo.server
-        last: list[float] = []
+        ours, counterpart = shares_of(
+            (bridge, gazebo.server), lambda: gazebo.drive(WINDOW_S), lambda: gazebo.now)
 
-        def shares() -> Took:
-            before = [processor_time_ns(each) for each in processes]
-            begin = gazebo.now
-            gazebo.drive(WINDOW_S)
-            last[:] = [
-                1e-9 * (processor_time_ns(each) - first) / (gazebo.now - begin)
-                for each, first in zip(processes, before, strict=True)]
+        def share() -> object:
+            took = ours()
             gazebo.forget()
-            return Took(last[0])
-        yield shares, lambda: Took(last[1])
+            return took
+        yield share, counterpart

@@ -6,27 +6,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 import contextlib
-from pathlib import Path
 import subprocess
 import sys
 import time
 
 from benchmarks.bench_reload import work_cell
-from benchmarks.bench_services import MINIMAL_NODE
-from benchmarks.harness import benchmark, Function, TimesAsFast, Took, Unavailable
+from benchmarks.harness import benchmark, Function, TimesAsFast
+from benchmarks.processes import MINIMAL_NODE, shares_of
 
 WINDOW_S = 5.0
 LARGEST_SHARE = 0.002
 """Of a core."""
-
-
-def processor_time_ns(process: subprocess.Popen) -> int:
-    """Return the nanoseconds that the threads of a process have run so far."""
-    files = list(Path(f'/proc/{process.pid}/task').glob('*/schedstat'))
-    if not files:
-        msg = 'this system does not report how long threads have run'
-        raise Unavailable(msg)
-    return sum(int(file.read_text(encoding='ascii').split()[0]) for file in files)
 
 
 @benchmark(
@@ -38,20 +28,4 @@ def idle_and_minimal_node() -> Iterator[tuple[Function, Function | None]]:
         minimal = bridge.start(
             stack, sys.executable, '-c', MINIMAL_NODE, stderr=subprocess.DEVNULL)
         bridge.client.caller(Empty, '/minimal/empty', Empty.Request())()
-        processes = (bridge.process, minimal)
-
-        def shares() -> list[float]:
-            before = [processor_time_ns(process) for process in processes]
-            begin = time.perf_counter_ns()
-            time.sleep(WINDOW_S)
-            window = time.perf_counter_ns() - begin
-            return [
-                (processor_time_ns(process) - first) / window
-                for process, first in zip(processes, before, strict=True)]
-        # Both are measured in the same time, and then returned one after the other.
-        last: list[float] = []
-
-        def ours() -> Took:
-            last[:] = shares()
-            return Took(last[0])
-        yield ours, lambda: Took(last[1])
+        yield shares_of((bridge.process, minimal), lambda: time.sleep(WINDOW_S))

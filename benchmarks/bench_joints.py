@@ -11,16 +11,14 @@ from pathlib import Path
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from benchmarks.bench_idle import processor_time_ns
 from benchmarks.bench_publication import node
-from benchmarks.bench_reload import RunningBridge
-from benchmarks.harness import AtMostTimes, benchmark, Function, TimesAsFast, Took, wait_until
+from benchmarks.harness import AtMostTimes, benchmark, Function, TimesAsFast, wait_until
+from benchmarks.processes import own_node, repeated, RunningBridge, shares_of
 import sdf_pose_bridge
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
@@ -189,41 +187,15 @@ def shares_while_publishing(
     :param counterpart: the program of the counterpart, and its arguments.
     :param publishing: makes publishers on a node, and returns a function that publishes once.
     """
-    import rclpy
-    from rclpy.context import Context
     with contextlib.ExitStack() as stack:
         file = Path(stack.enter_context(tempfile.TemporaryDirectory()), 'file.sdf')
         file.write_text(text, encoding='utf-8')
         bridge = RunningBridge(stack, file, 'watch:=false', 'pose_topics:=[]', *parameters)
-        processes = [bridge.process, bridge.start(
-            stack, sys.executable, '-c', *counterpart, stderr=subprocess.DEVNULL)]
-        context = Context()
-        rclpy.init(args=[], context=context, domain_id=bridge.domain)
-        stack.callback(context.shutdown)
-        publish = publishing(rclpy.create_node('sender', context=context))
-        has_ended = threading.Event()
-        stack.callback(has_ended.set)
-
-        def publish_all() -> None:
-            due = time.perf_counter()
-            while not has_ended.is_set():
-                publish()
-                due += 1.0 / rate_hz
-                time.sleep(max(0.0, due - time.perf_counter()))
-
-        threading.Thread(target=publish_all, daemon=True).start()
-        last: list[float] = []
-
-        def ours() -> Took:
-            before = [processor_time_ns(process) for process in processes]
-            begin = time.perf_counter_ns()
-            time.sleep(WINDOW_S)
-            window = time.perf_counter_ns() - begin
-            last[:] = [
-                (processor_time_ns(process) - first) / window
-                for process, first in zip(processes, before, strict=True)]
-            return Took(last[0])
-        yield ours, lambda: Took(last[1])
+        other = bridge.start(
+            stack, sys.executable, '-c', *counterpart, stderr=subprocess.DEVNULL)
+        publish = publishing(stack.enter_context(own_node(bridge.domain)))
+        stack.enter_context(repeated(publish, rate_hz))
+        yield shares_of((bridge.process, other), lambda: time.sleep(WINDOW_S))
 
 
 @benchmark(

@@ -15,7 +15,6 @@ import tempfile
 import time
 from typing import NamedTuple
 
-from benchmarks.bench_reload import RunningBridge
 from benchmarks.harness import (
     AtMostTimes,
     benchmark,
@@ -25,6 +24,7 @@ from benchmarks.harness import (
     Took,
     Unavailable,
 )
+from benchmarks.processes import latched, own_node, RunningBridge
 
 FRAMES = 10_000
 TOPICS = 1_000
@@ -103,19 +103,11 @@ def late_listener(domain: int, wanted: dict[str, tuple[type, int]]) -> Arrival:
         that comes late.
     :return: when it came.
     """
-    import rclpy
-    from rclpy.context import Context
-    from rclpy.qos import DurabilityPolicy, QoSProfile
     begin = time.perf_counter()
     first = None
-    context = Context()
-    rclpy.init(args=[], context=context, domain_id=domain)
-    node = rclpy.create_node(f'late_{random.randint(0, 10 ** 9)}', context=context)
-    try:
+    with own_node(domain) as node:
         missing = {
-            node.create_subscription(
-                type_, topic, print, QoSProfile(
-                    depth=count, durability=DurabilityPolicy.TRANSIENT_LOCAL)): count
+            node.create_subscription(type_, topic, print, latched(count)): count
             for topic, (type_, count) in wanted.items()}
         deadline = time.monotonic() + DEADLINE_S
         # An executor would look at every subscription for each message.
@@ -137,10 +129,6 @@ def late_listener(domain: int, wanted: dict[str, tuple[type, int]]) -> Arrival:
             time.sleep(0.001)
         assert first is not None
         return Arrival(first, time.perf_counter() - begin)
-    finally:
-        node.destroy_node()
-        context.shutdown()
-        context.destroy()
 
 
 def report(whose: str, arrivals: list[Arrival]) -> None:

@@ -6,13 +6,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 import contextlib
-import os
 from pathlib import Path
 import random
 import tempfile
 from typing import TYPE_CHECKING
 
 from benchmarks.harness import AtMostTimes, benchmark, DOMAINS, Function, TimesAsFast
+from benchmarks.processes import latched, own_node
 import sdf_pose_bridge
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import SEPARATOR
@@ -58,31 +58,12 @@ def scene_of(models: int) -> Scene:
         return sdf_pose_bridge.load(path)
 
 
-@contextlib.contextmanager
-def node() -> Iterator[Node]:
-    """Make a node of this process with an executor, in a ROS context of its own."""
-    import rclpy
-    from rclpy.context import Context
-    from rclpy.executors import SingleThreadedExecutor
-    os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
-    context = Context()
-    rclpy.init(args=[], context=context, domain_id=random.choice(DOMAINS))
-    made = rclpy.create_node('benchmark', context=context)
-    executor = SingleThreadedExecutor(context=context)
-    executor.add_node(made)
-    try:
-        yield made
-    finally:
-        executor.shutdown()
-        made.destroy_node()
-        context.shutdown()
-        context.destroy()
+def node() -> contextlib.AbstractContextManager[Node]:
+    return own_node(random.choice(DOMAINS))
 
 
 def latched_publisher(node: Node, message_type: type, name: str, depth: int) -> Publisher:
-    from rclpy.qos import DurabilityPolicy, QoSProfile
-    return node.create_publisher(
-        message_type, name, QoSProfile(depth=depth, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+    return node.create_publisher(message_type, name, latched(depth))
 
 
 def transforms_of_tree(tree: TfTree) -> Iterator[tuple[str, str, Pose]]:
@@ -195,7 +176,7 @@ def tf_static_again() -> Iterator[tuple[Function, Function | None]]:
         frames = bench.frames(bench.tree)
 
         def publish_again() -> None:
-            frames.stamp = bench.publishers.now()
+            frames.stamp_ns = bench.publishers.now_ns()
             frames.publish_tf_static()
         yield publish_again, bench.send_objects_of_tree
 

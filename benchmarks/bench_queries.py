@@ -8,8 +8,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from benchmarks.bench_services import bridge_and_minimal_node
 from benchmarks.harness import AtMostTimes, benchmark, Function, TimesAsFast
+from benchmarks.processes import calls
 
 LINKS = ''.join(
     f'<link name="l{number}"><pose degrees="true">{number} 1 2 10 20 {number}</pose></link>'
@@ -43,20 +43,13 @@ def lookup_request() -> object:
 
 @benchmark('~/lookup_pose', counterpart='an empty service', goal=AtMostTimes(1.15))
 def lookup_and_empty_service() -> Iterator[tuple[Function, Function | None]]:
-    from std_srvs.srv import Empty
-
     from sdf_pose_bridge_interfaces.srv import LookupPose
-    with bridge_and_minimal_node(WORLD) as client:
-        yield (
-            client.caller(LookupPose, '/sdf_pose_bridge/lookup_pose', lookup_request()),
-            client.caller(Empty, '/minimal/empty', Empty.Request()))
+    yield from calls(LookupPose, 'lookup_pose', lookup_request(), text=WORLD)
 
 
 # What remains when rclpy's cost of converting messages with these fields is taken out.
 @benchmark('~/lookup_pose', counterpart='an empty service of its type', goal=AtMostTimes(1.15))
 def lookup_and_service_of_same_type() -> Iterator[tuple[Function, Function | None]]:
     from sdf_pose_bridge_interfaces.srv import LookupPose
-    with bridge_and_minimal_node(WORLD) as client:
-        yield (
-            client.caller(LookupPose, '/sdf_pose_bridge/lookup_pose', lookup_request()),
-            client.caller(LookupPose, '/minimal/type_of_lookup', lookup_request()))
+    yield from calls(
+        LookupPose, 'lookup_pose', lookup_request(), 'type_of_lookup', text=WORLD)

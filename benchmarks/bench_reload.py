@@ -7,9 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 import contextlib
 import itertools
-import os
 from pathlib import Path
-import random
 import shutil
 import struct
 import subprocess
@@ -17,16 +15,8 @@ import sys
 import tempfile
 import time
 
-from benchmarks.bench_services import Client, MINIMAL_NODE
-from benchmarks.harness import (
-    AtMostTimes,
-    benchmark,
-    DOMAINS,
-    Function,
-    TimesAsFast,
-    Took,
-    Unavailable,
-)
+from benchmarks.harness import AtMostTimes, benchmark, Function, TimesAsFast, Took
+from benchmarks.processes import latched, MINIMAL_NODE, RunningBridge
 
 EXAMPLES = Path(__file__).resolve().parents[1] / 'examples'
 WORK_CELL = 'work_cell.sdf'
@@ -37,12 +27,13 @@ LONGEST_RELOAD_S = 0.03
 LONGEST_NOTICE_S = 0.05
 
 CALLER = """
+import contextlib
 import sys
 import threading
 import time
 
-from benchmarks.bench_services import Client
 from benchmarks.bench_services import rotation_request
+from benchmarks.processes import Client
 from sdf_pose_bridge_interfaces.srv import ConvertRotation
 
 asked = threading.Event()
@@ -51,7 +42,8 @@ def listen():
     for line in sys.stdin:
         asked.set()
 
-client = Client(int(sys.argv[1]))
+stack = contextlib.ExitStack()
+client = Client(stack, int(sys.argv[1]))
 call = client.caller(ConvertRotation, '/sdf_pose_bridge/convert_rotation', rotation_request())
 call()
 threading.Thread(target=listen, daemon=True).start()
@@ -70,66 +62,15 @@ while True:
 """Calls the bridge again and again; writes the longest call whenever it is asked for it."""
 
 
-class RunningBridge:
-    """
-    The installed bridge on a file, in a process and a domain of its own.
-
-    :param stack: ends it.
-    :param file: the file.
-    :param parameters: more of them, as ``name:=value``.
-    """
-
-    def __init__(self, stack: contextlib.ExitStack, file: Path, *parameters: str) -> None:
-        from ament_index_python.packages import get_package_prefix
-        self.domain = random.choice(DOMAINS)
-        os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
-        self.environment = dict(os.environ, ROS_DOMAIN_ID=str(self.domain))
-        self.file = file
-        try:
-            prefix = Path(get_package_prefix('sdf_pose_bridge'))
-        except LookupError:
-            msg = 'sdf_pose_bridge is not installed'
-            raise Unavailable(msg) from None
-        self.process = self.start(
-            stack, prefix / 'lib/sdf_pose_bridge/bridge', '--ros-args', '-p', f'sdf_file:={file}',
-            *itertools.chain.from_iterable(('-p', each) for each in parameters),
-            stderr=subprocess.DEVNULL)
-        self.client = Client(self.domain)
-        stack.callback(self.client.close)
-
-    def start(
-        self, stack: contextlib.ExitStack, *command: object, **options: object,
-    ) -> subprocess.Popen[str]:
-        """
-        Start another process in its domain, which SIGTERM ends.
-
-        A node in Python leaves that to the system: with rclpy's handlers it goes on waiting for
-        ever where the signal comes just as it begins to spin.
-        """
-        process = stack.enter_context(subprocess.Popen(
-            list(map(str, command)), env=self.environment, text=True, **options))
-        stack.callback(process.terminate)
-        return process
-
-    def replace(self, text: str) -> None:
-        """Replace the file, as editors do."""
-        new = self.file.with_suffix('.new')
-        new.write_text(text, encoding='utf-8')
-        new.replace(self.file)
-
-
 @contextlib.contextmanager
 def work_cell() -> Iterator[tuple[RunningBridge, Callable[[], bytes]]]:
     """Run the bridge on a copy of the example; also give a function that waits for /tf_static."""
-    from rclpy.qos import DurabilityPolicy, QoSProfile
     from tf2_msgs.msg import TFMessage
     with contextlib.ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()), 'examples')
         shutil.copytree(EXAMPLES, folder)
         bridge = RunningBridge(stack, folder / WORK_CELL)
-        next_message = bridge.client.listener(
-            TFMessage, '/tf_static',
-            QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+        next_message = bridge.client.listener(TFMessage, '/tf_static', latched(10))
         next_message()
         yield bridge, next_message
 
@@ -265,12 +206,9 @@ def answers_during_setting() -> Iterator[tuple[Function, Function | None]]:
     f'{WIDE} by the watch', counterpart='without a reload',
     goal=TimesAsFast(longest_s=LONGEST_ANSWER_S))
 def answers_during_noticed_change() -> Iterator[tuple[Function, Function | None]]:
-    from rclpy.qos import DurabilityPolicy, QoSProfile
     from tf2_msgs.msg import TFMessage
     with wide_bridge() as (bridge, longest):
-        next_message = bridge.client.listener(
-            TFMessage, '/tf_static',
-            QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+        next_message = bridge.client.listener(TFMessage, '/tf_static', latched(10))
         next_message()
         text = wide_world()
 

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 import contextlib
 import itertools
 import os
@@ -17,7 +17,6 @@ import tempfile
 import time
 from typing import NamedTuple
 
-from benchmarks.bench_idle import processor_time_ns
 from benchmarks.harness import (
     AtMostTimes,
     benchmark,
@@ -28,9 +27,9 @@ from benchmarks.harness import (
     Took,
     Unavailable,
 )
+from benchmarks.processes import Client, latched, processor_time_ns, program_of
 
 WORK_CELL = Path(__file__).resolve().parents[1] / 'examples/work_cell.sdf'
-DEADLINE_S = 20.0
 LISTENER_AGE_S = (0.8, 1.3)
 IMPORTS_MS = 60
 LATE_S = 1.0
@@ -93,9 +92,7 @@ class Starter:
     """
 
     def __init__(self, folder: str) -> None:
-        self._environment = dict(
-            os.environ, PYTHONPYCACHEPREFIX=f'{folder}/compiled',
-            ROS_AUTOMATIC_DISCOVERY_RANGE='LOCALHOST')
+        self._environment = dict(os.environ, PYTHONPYCACHEPREFIX=f'{folder}/compiled')
         self._environment.pop('PYTHONDONTWRITEBYTECODE', None)
         self._folder = folder
         self._processes: list[subprocess.Popen] = []
@@ -130,15 +127,15 @@ class Starter:
 
     def until_received(self, command: list[str]) -> float:
         """Start a program for a listener that waits; return the seconds until it got something."""
-        with listener(domain := next(self._domains)) as has_received:
+        from tf2_msgs.msg import TFMessage
+        with contextlib.ExitStack() as stack:
+            domain = next(self._domains)
+            wait = Client(stack, domain).listener(TFMessage, '/tf_static', latched(1))
             # It has announced itself by then; the pace of that would show in the times.
             time.sleep(random.uniform(*LISTENER_AGE_S))
             begin = time.perf_counter()
             process = self.start([sys.executable, *command], domain)
-            while not has_received():
-                if time.perf_counter() - begin > DEADLINE_S:
-                    msg = f'nothing came from {command[0]}'
-                    raise Unavailable(msg)
+            wait()
             seconds = time.perf_counter() - begin
             process.kill()
             process.wait()
@@ -162,37 +159,6 @@ class Starter:
             process.wait()
 
 
-@contextlib.contextmanager
-def listener(domain: int) -> Iterator[Callable[[], bool]]:
-    """Listen to /tf_static; give a function that waits a little and returns whether it came."""
-    import rclpy
-    from rclpy.context import Context
-    from rclpy.executors import SingleThreadedExecutor
-    from rclpy.qos import DurabilityPolicy, QoSProfile
-    from tf2_msgs.msg import TFMessage
-    os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
-    context = Context()
-    rclpy.init(args=[], context=context, domain_id=domain)
-    node = rclpy.create_node('listener', context=context)
-    received: list[object] = []
-    node.create_subscription(
-        TFMessage, '/tf_static', received.append,
-        QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL))
-    executor = SingleThreadedExecutor(context=context)
-    executor.add_node(node)
-
-    def has_received() -> bool:
-        executor.spin_once(timeout_sec=1.0)
-        return bool(received)
-    try:
-        yield has_received
-    finally:
-        executor.shutdown()
-        node.destroy_node()
-        context.shutdown()
-        context.destroy()
-
-
 def report_imports(starter: Starter) -> None:
     """Print what the node's imports take beyond those of the minimal node, which has rclpy's."""
     program = MINIMAL_NODE.replace('rclpy.spin(node)', '')
@@ -210,18 +176,13 @@ def report_imports(starter: Starter) -> None:
 @contextlib.contextmanager
 def prepared_starter() -> Iterator[tuple[Starter, list[str], list[str]]]:
     """Give a starter, and the commands of the bridge and of the minimal node."""
-    from ament_index_python.packages import get_package_prefix
-    try:
-        prefix = get_package_prefix('sdf_pose_bridge')
-    except LookupError:
-        msg = 'sdf_pose_bridge is not installed'
-        raise Unavailable(msg) from None
     with tempfile.TemporaryDirectory() as folder:
         minimal = Path(folder, 'minimal_node')
         minimal.write_text(MINIMAL_NODE, encoding='utf-8')
         starter = Starter(folder)
         ours = [
-            f'{prefix}/lib/sdf_pose_bridge/bridge', '--ros-args', '-p', f'sdf_file:={WORK_CELL}']
+            str(program_of('sdf_pose_bridge', 'bridge')), '--ros-args', '-p',
+            f'sdf_file:={WORK_CELL}']
         theirs = [str(minimal)]
         try:
             for command in (ours, theirs):

@@ -14,8 +14,8 @@ import time
 from typing import Any
 
 from benchmarks.bench_models import world_text
-from benchmarks.bench_reload import RunningBridge
 from benchmarks.harness import benchmark, Function, TimesAsFast, Took
+from benchmarks.processes import RunningBridge
 
 LONGEST_WAIT_S = 0.5
 """As docs/security.md says."""

@@ -97,13 +97,15 @@ class AtMostTimes(NamedTuple):
     """Ours may take so many times what the counterpart takes."""
 
     limit: float
+    what: str = 'time'
+    """What is measured: "time" or "memory"."""
 
     def __str__(self) -> str:
-        return f'at most {self.limit:g} times the time'
+        return f'at most {self.limit:g} times the {self.what}'
 
     def ratio(self, medians: Medians) -> str:
-        """Say how many times the counterpart's time ours takes."""
-        return f'{_quotient(medians):.2f} times the time'
+        """Say how many times what the counterpart takes ours takes."""
+        return f'{_quotient(medians):.2f} times the {self.what}'
 
     def is_reached(self, medians: Medians) -> bool | None:
         """Tell whether ours keeps within the limit."""
@@ -166,35 +168,18 @@ class PerSecond(NamedTuple):
         return self.items / medians.ours_s >= self.rate
 
 
-class AtMostAsMuch(NamedTuple):
-    """Ours may hold so many times the memory that the counterpart holds."""
-
-    limit: float
-
-    def __str__(self) -> str:
-        return f'at most {self.limit:g} times the memory'
-
-    def ratio(self, medians: Medians) -> str:
-        """Say how many times the counterpart's memory ours is."""
-        return f'{_quotient(medians):.2f} times the memory'
-
-    def is_reached(self, medians: Medians) -> bool | None:
-        """Tell whether ours keeps within the limit."""
-        return _quotient(medians) <= self.limit
-
-
 @dataclasses.dataclass(frozen=True, slots=True)
 class Benchmark:
     """Two functions to be timed, and what the comparison shall show."""
 
     what: str
     counterpart: str
-    goal: AtMostTimes | TimesAsFast | PerSecond | AtMostAsMuch
+    goal: Goal
     prepare: Preparation
 
 
 def benchmark(
-    what: str, *, counterpart: str, goal: AtMostTimes | TimesAsFast | PerSecond | AtMostAsMuch
+    what: str, *, counterpart: str, goal: Goal,
 ) -> Callable[[Preparation], Benchmark]:
     """
     Make a benchmark of a generator function that yields the two functions once.
@@ -235,7 +220,8 @@ def result_of(bench: Benchmark) -> Result:
     except Unavailable as reason:
         return _skipped(bench, str(reason))
     reached = bench.goal.is_reached(medians)
-    text = memory_text if isinstance(bench.goal, AtMostAsMuch) else time_text
+    is_memory = isinstance(bench.goal, AtMostTimes) and bench.goal.what == 'memory'
+    text = memory_text if is_memory else time_text
     return Result(
         bench.what,
         text(medians.ours_s),
