@@ -139,10 +139,8 @@ class Release:
         for tag, package in self._tags():
             run('git', 'worktree', 'add', '--quiet', '--detach', self._scratch / package, tag,
                 cwd=self._clone)
-        return f'version {self._version} of {self._commit()}'
-
-    def _commit(self) -> str:
-        return run('git', 'rev-parse', '--short', 'HEAD').strip()
+        commit = run('git', 'rev-parse', '--short', 'HEAD').strip()
+        return f'version {self._version} of {commit}'
 
     def _tags(self) -> tuple[tuple[str, str], tuple[str, str]]:
         return (self._version, BRIDGE), (f'interfaces-{self._version}', INTERFACES)

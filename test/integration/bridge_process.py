@@ -71,17 +71,10 @@ class LoggedProcess:
         """Return the number of lines with a text so far."""
         return sum(text in line for line in self.lines)
 
-    def wait_until_handling(self, number):
-        """Wait until the process has a handler of its own for a signal."""
+    def wait_for_signal(self, number, kind):
+        """Wait until the process blocks a signal, ``'SigBlk'``, or handles it, ``'SigCgt'``."""
         self._wait_for_status(
-            lambda status: int(status['SigCgt'], 16) >> (number - 1) & 1,
-            f'a handler of signal {number}')
-
-    def wait_until_blocking(self, number):
-        """Wait until a signal to the process waits until it is handled."""
-        self._wait_for_status(
-            lambda status: int(status['SigBlk'], 16) >> (number - 1) & 1,
-            f'signal {number} to be blocked')
+            lambda status: int(status[kind], 16) >> (number - 1) & 1, f'{kind} of signal {number}')
 
     def wait_until_sleeping(self):
         """Wait until the process waits for something itself."""

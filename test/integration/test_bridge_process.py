@@ -170,7 +170,7 @@ def test_a_negative_time_on_the_clock_does_not_end_it(start, start_listener):
 def test_a_signal_ends_it_well_before_anything_is_imported(start, number):
     bridge = start()
     # The first line of the executable does that; Python itself starts before.
-    bridge.wait_until_blocking(number)
+    bridge.wait_for_signal(number, 'SigBlk')
     bridge.send(number)
     assert_ended_well(bridge)
 
@@ -179,7 +179,7 @@ def test_a_signal_ends_it_well_before_anything_is_imported(start, number):
 def test_a_signal_ends_it_well_before_anything_is_loaded(start, number):
     bridge = start()
     # Python itself handles SIGINT; with SIGTERM the bridge has taken over both.
-    bridge.wait_until_handling(signal.SIGTERM)
+    bridge.wait_for_signal(signal.SIGTERM, 'SigCgt')
     bridge.send(number)
     assert_ended_well(bridge)
 

@@ -222,11 +222,17 @@ def assert_answers_or_is_gone(bridge, listener, service):
         assert code < 0 or bridge.lines[-1].endswith('not enough memory, so the node ends')
 
 
-UNABLE_TO_PUBLISH = """
+CHANGED = """
 import sys
 from sdf_pose_bridge.ros.file_process import FileProcess
 reader = FileProcess()
 from sdf_pose_bridge.ros.node.process import run
+{}
+sys.exit(run(sys.argv, 'bridge', reader))
+"""
+"""The node, with a change after the process that reads files has begun."""
+
+UNABLE_TO_PUBLISH = CHANGED.format("""
 from sdf_pose_bridge.ros.publishing.published_frames import PublishedFrames
 
 def publish_topics(frames):
@@ -235,8 +241,7 @@ def publish_topics(frames):
     publish(frames)
 
 publish, PublishedFrames.publish_topics = PublishedFrames.publish_topics, publish_topics
-sys.exit(run(sys.argv, 'bridge', reader))
-"""
+""")
 """The node, of which one publisher does not work when the crate is at x = 2."""
 
 
@@ -266,12 +271,8 @@ def test_a_publish_that_fails_after_the_swap_of_scenes_ends_the_bridge(
     assert not bridge.count_of('is rejected')
 
 
-TELLING = """
-import sys
-from sdf_pose_bridge.ros.file_process import FileProcess
-reader = FileProcess()
+TELLING = CHANGED.format("""
 from sdf_pose_bridge.ros.following.joint_states import JointStates
-from sdf_pose_bridge.ros.node.process import run
 from sdf_pose_bridge.ros.publishing.published_frames import PublishedFrames
 
 def told(function):
@@ -282,8 +283,7 @@ def told(function):
 
 JointStates.follow = told(JointStates.follow)
 PublishedFrames.publish_tf_static = told(PublishedFrames.publish_tf_static)
-sys.exit(run(sys.argv, 'bridge', reader))
-"""
+""")
 """The node, which tells when it follows the joints of a scene, and when it publishes a scene."""
 
 
@@ -298,19 +298,14 @@ def test_the_joints_of_a_new_scene_are_followed_before_it_is_published(start_bri
     assert done[-2:] == ['has done follow', 'has done publish_tf_static']
 
 
-WITH_DEFECT = """
-import sys
-from sdf_pose_bridge.ros.file_process import FileProcess
-reader = FileProcess()
+WITH_DEFECT = CHANGED.format("""
 from sdf_pose_bridge.ros.following import state_topic
-from sdf_pose_bridge.ros.node.process import run
 
 def joint_state_from_bytes(*_):
     raise TypeError('a defect')
 
 state_topic.joint_state_from_bytes = joint_state_from_bytes
-sys.exit(run(sys.argv, 'bridge', reader))
-"""
+""")
 """The node, which cannot read any JointState."""
 
 DEFECT = 'internal error in messages of /joint_states: a defect'

@@ -147,18 +147,15 @@ def test_template_that_is_not_xml(tmp_path, name, text, end):
         f'; the file is for {end}; run {end} first, and read the file that it writes')
 
 
-def test_the_file_beside_a_template_is_named(tmp_path):
-    (tmp_path / 'a.sdf').touch()
-    (tmp_path / 'a.sdf.j2').write_text('{{ a }}')
-    (error,) = errors_of_file(tmp_path / 'a.sdf.j2')
-    assert error.message.endswith('run Jinja first, and read "a.sdf" beside it')
-
-
-def test_the_template_beside_a_file_is_named(tmp_path):
-    (tmp_path / 'a.sdf.jinja').touch()
-    (tmp_path / 'a.sdf').write_text('{{ a }}')
-    (error,) = errors_of_file(tmp_path / 'a.sdf')
-    assert 'run Jinja on "a.sdf.jinja" beside it first' in error.message
+@pytest.mark.parametrize(('name', 'other', 'words'), [
+    ('a.sdf.j2', 'a.sdf', '; run Jinja first, and read "a.sdf" beside it'),
+    ('a.sdf', 'a.sdf.jinja', 'run Jinja on "a.sdf.jinja" beside it first')])
+def test_the_file_beside_a_template_and_the_template_beside_a_file_are_named(
+        tmp_path, name, other, words):
+    (tmp_path / other).touch()
+    (tmp_path / name).write_text('{{ a }}')
+    (error,) = errors_of_file(tmp_path / name)
+    assert words in error.message
 
 
 @pytest.mark.parametrize(('content', 'found'), [

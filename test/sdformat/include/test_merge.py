@@ -5,13 +5,14 @@
 import pytest
 from sdf_texts import (
     assert_at,
-    errors_of_file,
+    errors_of_files,
     fixed_joint,
     KINDS_IN_MODELS,
     LINK,
     names_of,
     part_of_model,
     posed,
+    scene_from_files,
     warning_codes,
     write_files,
 )
@@ -47,18 +48,12 @@ def in_world(content):
 @pytest.fixture
 def scene_of(tmp_path):
     """Load a text that merges ``arm.sdf``."""
-    def load_main(main, **texts):
-        write_files(tmp_path, main=main, **{'arm': ARM, **texts})
-        return load(tmp_path / 'main.sdf')
-    return load_main
+    return lambda main, **texts: scene_from_files(tmp_path, main=main, **{'arm': ARM, **texts})
 
 
 @pytest.fixture
 def errors_in(tmp_path):
-    def load_main(main, **texts):
-        write_files(tmp_path, main=main, **{'arm': ARM, **texts})
-        return errors_of_file(tmp_path / 'main.sdf')
-    return load_main
+    return lambda main, **texts: errors_of_files(tmp_path, main=main, **{'arm': ARM, **texts})
 
 
 @pytest.mark.parametrize(('flags', 'name'), [
@@ -265,12 +260,11 @@ def test_doubtful_pose_of_a_merge_is_warned_of_once(scene_of):
         ('WARNING', 2), ('WARNING', 3), *[('POSE_RELATIVE_TO_INVALID', 3)] * 2]
 
 
-def test_placement_frame_in_a_cycle_is_reported_as_the_cycle_alone(tmp_path):
+def test_placement_frame_in_a_cycle_is_reported_as_the_cycle_alone(errors_in):
     frame = '<frame name="{}"><pose relative_to="{}"/></frame>'
-    write_files(tmp_path, main=in_model(include('<pose/><placement_frame>f</placement_frame>')),
-                arm=arm(LINK + frame.format('f', 'g') + frame.format('g', 'f')))
-    assert {error.code for error in errors_of_file(tmp_path / 'main.sdf')} == {
-        'POSE_RELATIVE_TO_CYCLE'}
+    errors = errors_in(in_model(include('<pose/><placement_frame>f</placement_frame>')),
+                       arm=arm(LINK + frame.format('f', 'g') + frame.format('g', 'f')))
+    assert {error.code for error in errors} == {'POSE_RELATIVE_TO_CYCLE'}
 
 
 def test_other_content_of_the_merged_model_is_dropped(scene_of):

@@ -101,21 +101,16 @@ def test_joint_that_sdformat_does_not_have_is_refused_in_an_include(errors_in, j
     assert (error.code, error.line) == ('POSE_RELATIVE_TO_INVALID', 2)
 
 
-def test_planar_joint_is_fixed_for_ros():
-    scene = for_ros(TWO + joint('j', 'a', 'b', 'planar', origin('1 0 0')))
+@pytest.mark.parametrize(('joint_type', 'types', 'words'), [
+    ('planar', ['fixed'], 'joint "j" is planar, which SDFormat does not have'),
+    ('floating', [], 'joint "j" is floating; somebody else has to publish where link "b" is')])
+def test_for_ros_a_planar_joint_is_fixed_and_a_floating_one_left_to_others(
+        joint_type, types, words):
+    scene = for_ros(TWO + joint('j', 'a', 'b', joint_type, origin('1 0 0')))
     assert scene.pose('r::b').x == 1.0
-    assert [each.type for each in scene.joints] == ['fixed']
+    assert [each.type for each in scene.joints] == types
     (warning,) = scene.warnings
-    assert 'joint "j" is planar, which SDFormat does not have' in warning.message
-
-
-def test_floating_joint_is_left_to_others_for_ros():
-    scene = for_ros(TWO + joint('j', 'a', 'b', 'floating', origin('1 0 0')))
-    assert scene.pose('r::b').x == 1.0
-    assert scene.joints == ()
-    (warning,) = scene.warnings
-    assert warning.message == (
-        'joint "j" is floating; somebody else has to publish where link "b" is')
+    assert words in warning.message
 
 
 def test_axis_limits_dynamics_and_mimic_are_converted():
