@@ -111,6 +111,7 @@ mutants: setup
 	  && printf '%s\n' '[tool.mutmut]' "source_paths = ['sdf_pose_bridge']" "also_copy = ['test', 'examples', 'config', 'docs']" \
 	    "only_mutate = ['sdf_pose_bridge/$(MODULE).py']" \
 	    "pytest_add_cli_args_test_selection = ['test/$(dir $(MODULE))test_$(notdir $(MODULE)).py']" \
+	    "process_isolation = 'forkserver'" \
 	    >> pyproject.toml \
 	  && python -m mutmut run --max-children $$(nproc) && exec python -m mutmut results
 
