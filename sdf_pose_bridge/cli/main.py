@@ -11,7 +11,6 @@ import contextlib
 import importlib
 import io
 import os
-from pathlib import Path
 import re
 import signal
 import sys
@@ -127,7 +126,7 @@ class _Parser(argparse.ArgumentParser):
         """Print the error with the nearest choice, and end the process."""
         if wrong := _INVALID_CHOICE.search(message):
             choices = re.findall(r'\w+', wrong[2])
-            is_file = 'check' in choices and Path(wrong[1]).is_file()
+            is_file = 'check' in choices and os.path.isfile(wrong[1])  # noqa: PTH113 - of any length
             message += f'; did you mean "{self.prog} check {wrong[1]}"?' if is_file else (
                 hint_from_names(wrong[1], choices))
         super().error(message)

@@ -108,7 +108,7 @@ def run(options: argparse.Namespace) -> int:
             scene = load()
         except SdfError as error:
             # The page waits until the file is mended.
-            if options.output is not None or options.model or not Path(path).is_file():
+            if options.output or options.model or not os.path.isfile(path):  # noqa: PTH113
                 raise
             scene, errors = load_text(_EMPTY, path), error.errors
         print_problems(errors, scene.warnings, sys.stderr)

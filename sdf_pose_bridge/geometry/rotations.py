@@ -194,7 +194,7 @@ def matrix_from_quaternion(xp: Any, *quat: Component) -> Any:
     """
     x, y, z, w = canonical_quaternion.formula(xp, *quat)
     xx, yy, zz, ww = x * x, y * y, z * z, w * w
-    xy, xz, yz = x * y, x * z, y * z
+    xy, xz, yz = x * y + 0.0, x * z + 0.0, y * z + 0.0  # not -0.0
     wx, wy, wz = w * x, w * y, w * z
     return (
         ((ww + xx) - (yy + zz), 2.0 * (xy - wz), 2.0 * (xz + wy)),

@@ -93,10 +93,12 @@ def test_wrong_shapes_are_errors(function, values):
 
 
 @pytest.mark.parametrize('shape', [(), (2,), (3, 2), (3, 3, 5)])
-@pytest.mark.parametrize('function', [
-    quaternion_from_rpy, *FROM_QUATERNION, quaternion_from_matrix])
-def test_wrong_shapes_of_arrays_are_errors(function, shape):
-    with pytest.raises(RotationError, match='must have shape'):
+@pytest.mark.parametrize(('function', 'name'), [
+    (quaternion_from_rpy, 'roll, pitch, yaw'), (quaternion_from_matrix, 'rotation matrix'),
+    (quaternion_from_rotation_vector, 'rotation vector'),
+    *((each, 'quaternion') for each in FROM_QUATERNION)])
+def test_wrong_shapes_of_arrays_are_errors(function, name, shape):
+    with pytest.raises(RotationError, match=f'^{name} must have shape'):
         function(np.zeros(shape))
 
 
@@ -169,14 +171,12 @@ def test_the_first_component_of_a_half_turn_is_positive(quat, canonical):
     assert canonical_quaternion(np.array([given])).tolist() == [expected]
 
 
-@pytest.mark.parametrize('rpy', [(-0.0, -0.0, -0.0), (0.0, -0.0, 1.0), (math.pi, -0.0, -0.0)])
-@pytest.mark.parametrize('through', [
-    quaternion_from_rpy,
-    lambda rpy: rpy_from_quaternion(quaternion_from_rpy(rpy)),
-    lambda rpy: matrix_from_quaternion(quaternion_from_rpy(rpy)),
-])
-def test_results_have_no_negative_zeros(through, rpy):
-    for answer in (through(rpy), through(np.array([rpy]))):
+@pytest.mark.parametrize('function', [quaternion_from_rpy, *FROM_QUATERNION])
+def test_results_have_no_negative_zeros(function):
+    size = 3 if function is quaternion_from_rpy else 4
+    rows = [row for row in itertools.product((0.0, -0.0, 1.0, -1.0, math.pi), repeat=size)
+            if size == 3 or any(row)]
+    for answer in ([function(row) for row in rows], function(np.array(rows))):
         flat = np.ravel(answer)
         assert not np.signbit(flat[flat == 0.0]).any()
 

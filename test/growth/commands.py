@@ -45,7 +45,6 @@ JOINTS = REPEATED['joints'].replace('<axis/>', '<axis><xyz>0 0 1</xyz></axis>')
 BALLS = REPEATED['joints'].replace('revolute', 'ball')
 MESHES = ('<link name="l">|<visual name="v#"><geometry><mesh><uri>none#.stl</uri></mesh>'
           '</geometry></visual>|</link>')
-TWO_LINKS = model(LINKS.replace('#', '0') + LINKS.replace('#', '1'))
 MODELS = (f'|<model name="m#">{LINK}<plugin name="gz::sim::systems::PosePublisher" filename="f"/>'
           '</model>|')
 
@@ -60,7 +59,6 @@ ROWS: dict[str, dict[str, tuple[int, Callable[[int], Run]]]] = {
         'positions of joints': (400, lambda n: Run(
             ('scene.sdf', *(f'--joint=j{i}=0.1' for i in range(n))),
             {'scene.sdf': model(each(n, JOINTS))})),
-        'scopes of a name': (50_000, of(TWO_LINKS, '--relative-to', '|a::|')),
     },
     'tree': {
         'models in one another': (2000, lambda n: Run(('scene.sdf',), {
