@@ -207,8 +207,7 @@ class UrdfWriter:
             etree.SubElement(etree.SubElement(xml, 'geometry'), tag, attributes)
             if kind == Kind.VISUAL.label and shape.drawn_rgba is not None:
                 text = _numbers(shape.drawn_rgba)
-                material = etree.SubElement(
-                    xml, 'material', name=f'rgba_{text.replace(" ", "_")}')
+                material = etree.SubElement(xml, 'material', name=f'rgba_{text.replace(" ", "_")}')
                 etree.SubElement(material, 'color', rgba=text)
 
     def _geometries(self, shape: Shape, element: int) -> list[_Geometry] | str:

@@ -331,8 +331,7 @@ class ElementReader:
         ignored = f'relative_to="{relative_to}" is ignored'
         if table.kinds[index] == Kind.ACTOR:
             self._sources.warning(xml, f'{ignored}; an actor is placed in the world')
-        elif (table.kinds[index] == Kind.LIGHT
-                and table.kinds[table.parents[index]] == Kind.ROOT):
+        elif table.kinds[index] == Kind.LIGHT and table.kinds[table.parents[index]] == Kind.ROOT:
             msg = f'{ignored}; a light at the top of a file is placed in the implicit root'
             self._sources.warning(xml, msg)
         else:

@@ -299,8 +299,7 @@ class Definition:
             if each in _CONTENTS), '')
         if item.value or not identifier:
             return Definition(item.name, f'{item.required}{item.value or ":string"}')
-        return definition_of(
-            identifier, has_frames=self.has_frames and identifier not in _UNREAD)
+        return definition_of(identifier, has_frames=self.has_frames and identifier not in _UNREAD)
 
 
 def definition_of(identifier: str, *, has_frames: bool = False) -> Definition:

@@ -55,8 +55,7 @@ _INTEGER_RANGES = {
     # A negative number counts modulo 2 ** 64.
     ValueType.UNSIGNED: (-2 ** 64 + 1, 2 ** 64 - 1),
 }
-_TYPES_BY_COUNT = {
-    1: ValueType.NUMBER, 2: ValueType.TWO_NUMBERS, 3: ValueType.THREE_NUMBERS}
+_TYPES_BY_COUNT = {1: ValueType.NUMBER, 2: ValueType.TWO_NUMBERS, 3: ValueType.THREE_NUMBERS}
 
 
 def frame_of_attribute(xml: XmlElement, attribute: str) -> str:

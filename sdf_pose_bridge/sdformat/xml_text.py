@@ -45,8 +45,7 @@ _RANKS = {each.tag: rank for rank, each in enumerate(reversed(SourceFormat), 1)}
 
 _SPACE = f'[{WHITE_SPACE}]*'
 _NAME = r'[^\W\d][\w:.\-]*|:[\w:.\-]*'
-_ATTRIBUTE = re.compile(
-    rf'({_SPACE})((?:{_NAME}){_SPACE}={_SPACE}(["\']))(.*?)\3', re.DOTALL)
+_ATTRIBUTE = re.compile(rf'({_SPACE})((?:{_NAME}){_SPACE}={_SPACE}(["\']))(.*?)\3', re.DOTALL)
 _TOKEN = re.compile(
     rf'(?P<comment><!--.*?-->)|(?P<verbatim><!\[CDATA\[.*?\]\]>)|(?P<instruction><\?.*?\?>)'
     rf'|(?P<other><!(?!--|\[CDATA\[)[^>]*>)|(?P<text>[^<]+)'

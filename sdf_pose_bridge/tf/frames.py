@@ -153,8 +153,7 @@ def check_frames_of_sensors(
                 ('optical frame id', details.optical_frame_id, (optical_pose,))):
             other = owners.get(naming.frame_id_from_name(naming.name_from_frame_id(name)))
             # Two sensors with one frame id are an error, unless only Harmonic sends it.
-            if other in (None, sensor) or (
-                    other in scene.sensors and 'Harmonic' not in what):
+            if other in (None, sensor) or (other in scene.sensors and 'Harmonic' not in what):
                 continue
             named = scene.pose_of(other)
             nearest = min(poses, key=partial(misplacement, named))
@@ -194,8 +193,7 @@ def frames_at_joints(
         if is_last and is_same_place(relative_pose(pose, scene.pose_of(body))):
             continue
         parent_body = tf_parents.parents.item(body)
-        is_published = body in rows and (
-            parent_body in rows or scene.parents[parent_body] < 0)
+        is_published = body in rows and (parent_body in rows or scene.parents[parent_body] < 0)
         parent = frames.parents.item(rows[body]) if is_published else NO_PARENT
         slide = SLIDE_SUFFIX if dof.is_screw else ''
         frame_id = naming.frame_id_from_name(f'{dof.name}{slide}{LINK_SUFFIX}')

@@ -267,8 +267,7 @@ class JointPositions:
 
     def take_over(self, before: JointPositions) -> None:
         """Continue with the reported coordinates of joints and models of the same names."""
-        reported = {
-            before._key(dof): dof for dof in np.flatnonzero(before.is_reported).tolist()}
+        reported = {before._key(dof): dof for dof in np.flatnonzero(before.is_reported).tolist()}
         pairs = [
             (dof, reported[key]) for dof in range(len(self.names))
             if (key := self._key(dof)) in reported]
@@ -326,8 +325,7 @@ def scene_at_positions(scene: Scene, positions: Mapping[str, float]) -> Scene:
     elements = np.arange(len(scene.names), dtype=np.int32)
     poses = motion.moved_poses(scene.poses, elements, state.values)
     warnings = []
-    for name, dof, value in zip(
-            state.names, motion.dofs, state.values.tolist(), strict=True):
+    for name, dof, value in zip(state.names, motion.dofs, state.values.tolist(), strict=True):
         if not dof.axis.lower <= value <= dof.axis.upper:
             msg = (f'the position {value:g} of "{name}" is beyond its limits, '
                    f'{dof.axis.lower:g} to {dof.axis.upper:g}')
@@ -353,8 +351,7 @@ def _indices_from_names(
     aliases: dict[str, dict[str, set[int]]] = {'': {}}
     for index, (dof, top) in enumerate(zip(dofs, top_level_elements, strict=True)):
         scoped = scene.names[dof.joint.element]
-        if scene.roots[dof.joint.element] or (
-                model and not scoped.startswith(model + SEPARATOR)):
+        if scene.roots[dof.joint.element] or (model and not scoped.startswith(model + SEPARATOR)):
             continue
         before = scoped.removesuffix(JOINT_SUFFIX)
         shorter = set()

@@ -185,8 +185,7 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     is_detached = detached_bodies(scene, tf_parents, anchors, problems)
     if options.follows_models:
         tf_parents = tf_parents.with_free_models(scene, is_detached, options.model)
-    nearest_frames, parents = _nearest_frames_and_parents(
-        scene, tf_parents, elements, is_detached)
+    nearest_frames, parents = _nearest_frames_and_parents(scene, tf_parents, elements, is_detached)
     frames = Frames(list(frame_ids.values()), elements, parents, scene.poses[elements])
     optical_frames = optical_frames_of_cameras(
         frames, sensor_names, optical_names, scene, naming) if options.optical_frames else []
@@ -249,8 +248,7 @@ def _published_elements(scene: Scene, options: TfOptions, problems: Problems) ->
         what = 'the model beside the worlds' if name is None else f'world "{name}"'
         msg = f'{what} is not published; only the first world or model of a file is'
         problems.warning(msg, scene.place(root))
-    is_inside = (
-        elements_in_model(scene, options.model) if options.model else scene.roots == 0)
+    is_inside = elements_in_model(scene, options.model) if options.model else scene.roots == 0
     kinds = _kinds(scene, options)
     is_wanted = np.array([kind in kinds for kind in Kind])[scene.kinds]
     return np.flatnonzero(is_inside & is_wanted & ~is_root).astype(np.int32)

@@ -133,8 +133,7 @@ def answer_to_convert_poses(
     if len(request.values) > MOST_NUMBERS:
         msg = f'values has {len(request.values)} numbers; a call can have at most {MOST_NUMBERS}'
         raise PoseFormatError(msg)
-    converted = converted_poses(
-        np.asarray(request.values), request.from_format, request.to_format)
+    converted = converted_poses(np.asarray(request.values), request.from_format, request.to_format)
     source = format_from_name(request.from_format, POSE_FORMATS)
     response.message = source.doubt(request.values)
     # The message would check every element of anything but an array.array.

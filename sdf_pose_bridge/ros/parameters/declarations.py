@@ -126,8 +126,7 @@ def _rate(description: str, zero: str, highest: float, default: float = 0.0) -> 
             raise rules.refusal(value, rule)
         return value
 
-    return Declaration(
-        default, description, rule, setting, maximum=highest)
+    return Declaration(default, description, rule, setting, maximum=highest)
 
 
 class Settings:
@@ -160,9 +159,7 @@ class Settings:
         'URDF; "urdf" is URDF made of the published model, also of a world. Its links are the '
         'frames on TF, and TF also has frames at its joints.',
     )
-    publish_transforms = _switch(
-        True, 'Publishes all transforms one by one on ~/transforms.',
-    )
+    publish_transforms = _switch(True, 'Publishes all transforms one by one on ~/transforms.')
     publish_visuals = _switch(
         True, 'Publishes the shapes of the links on ~/visuals while there is a subscriber.',
     )
@@ -330,10 +327,7 @@ class Settings:
         'listeners that cannot use latched topics; 0.0 to publish them once.',
         'for never', rules.HIGHEST_RATE,
     )
-    watch = _switch(
-        True,
-        'Reads the file again when it, or a file that it includes, has changed.',
-    )
+    watch = _switch(True, 'Reads the file again when it, or a file that it includes, has changed.')
     on_missing_include = _choice(
         MissingInclude.ERROR,
         'Treatment of an include that is not found: "error" rejects the file, "skip" leaves the '
@@ -352,8 +346,7 @@ class Settings:
     @property
     def tf_options(self) -> TfOptions:
         """The settings of the TF tree; parameters and options have the same names."""
-        values = {
-            name: value for name, value in self.values.items() if name in TfOptions._fields}
+        values = {name: value for name, value in self.values.items() if name in TfOptions._fields}
         if self.model_name and self.frame_names is FrameNames.AUTO:
             values['frame_names'] = FrameNames.SCOPED
         return TfOptions(

@@ -65,8 +65,7 @@ class Diagnostics:
             return
         if self._last is not None:
             name = self._node.get_fully_qualified_name().lstrip('/')
-            self._message.status = [
-                status_from_scene(*self._last, self._state_report(), name)]
+            self._message.status = [status_from_scene(*self._last, self._state_report(), name)]
         self._message.header.stamp = self._node.get_clock().now().to_msg()
         self._publisher.publish(self._message)
 

@@ -147,8 +147,7 @@ def _replace_model_frame(
     for path, attribute in definition.references:
         for element in xml.iterfind(path):
             name = attribute_of(element, attribute) if attribute else value_of(element)
-            if name == MODEL_FRAME or (
-                    not name and (is_in_model or attribute == 'attached_to')):
+            if name == MODEL_FRAME or (not name and (is_in_model or attribute == 'attached_to')):
                 if attribute:
                     element.set(attribute, proxy)
                 else:

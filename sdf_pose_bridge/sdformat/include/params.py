@@ -40,8 +40,7 @@ from sdf_pose_bridge.sdformat.xml_tree import (
     XmlElement,
 )
 
-TOP_TAGS = [
-    kind.label for kind in Kind if 'sdf' in kind.parents and kind is not Kind.WORLD]
+TOP_TAGS = [kind.label for kind in Kind if 'sdf' in kind.parents and kind is not Kind.WORLD]
 """The tags of elements that can be included, in the order of preference."""
 _OWN_ATTRIBUTES = ('element_id', 'action')
 _ACTIONS = ('add', 'modify', 'remove', 'replace')
@@ -78,8 +77,7 @@ class _Changer:
         self._sources = sources
         self._reader = reader
         self._error = sources.error
-        self._actions = {
-            'modify': self._modify, 'remove': self._remove, 'replace': self._replace}
+        self._actions = {'modify': self._modify, 'remove': self._remove, 'replace': self._replace}
 
     # One parameter
 

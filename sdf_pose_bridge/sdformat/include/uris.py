@@ -289,8 +289,7 @@ class ResourceFinder(NamedTuple):
                 model = _entry_in_any_case(model, part)
             versions = [version]
             if version == 'tip':
-                numbers = [
-                    name for name in _entries(model) if name.isascii() and name.isdecimal()]
+                numbers = [name for name in _entries(model) if name.isascii() and name.isdecimal()]
                 versions = sorted(numbers, key=int, reverse=True)
             for candidate in versions:
                 yield '/'.join([model, candidate, *(rest[1:] if rest[:1] == ['files'] else rest)])

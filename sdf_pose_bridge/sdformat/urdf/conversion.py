@@ -171,8 +171,7 @@ class _Conversion:
             if joint is not None and joint.parent in left_out:
                 left_out.add(link.name)
             elif inertial is None or inertial.mass <= 0.0:
-                if link.name != WORLD_FRAME and (
-                        joint is None or not is_reducible(joint, robot)):
+                if link.name != WORLD_FRAME and (joint is None or not is_reducible(joint, robot)):
                     left_out.add(link.name)
                     self._sources.warning(
                         link.xml, f'link "{link.name}" has no mass, so Gazebo leaves it out with '
@@ -265,8 +264,7 @@ class _Conversion:
         base = self._bases[joint.parent]
         parent = base.link.name
         xml = self._add(self._model, 'joint', joint.xml, name=joint.name, type=joint_type)
-        self._add_pose_in_link(
-            xml, joint.xml, pose_product(base.pose, joint.origin), parent)
+        self._add_pose_in_link(xml, joint.xml, pose_product(base.pose, joint.origin), parent)
         self._add(xml, 'parent', joint.xml, parent)
         self._add(xml, 'child', joint.xml, joint.child)
         if JOINT_TYPES[joint_type]:
@@ -315,8 +313,7 @@ class _Conversion:
                 frame = self._add(
                     self._model, 'frame', joint.xml, name=joint.name, attached_to=joint.parent)
                 self._add_pose(frame, joint.xml, joint.origin, rpy_by_gz_math)
-                self._add(
-                    self._model, 'frame', link.xml, name=link.name, attached_to=joint.name)
+                self._add(self._model, 'frame', link.xml, name=link.name, attached_to=joint.name)
 
     def _add(
         self, parent: XmlElement, tag: str, source: XmlElement, text: str | None = None, *,
@@ -337,8 +334,7 @@ class _Conversion:
         if self._for_ros:  # angles would lose digits near gimbal lock
             return self._add(
                 xml, 'pose', source, text_from_numbers(pose, 17), rotation_format='quat_xyzw')
-        return self._add(
-            xml, 'pose', source, text_from_numbers([*pose[:3], *rpy_from_pose(pose)]))
+        return self._add(xml, 'pose', source, text_from_numbers([*pose[:3], *rpy_from_pose(pose)]))
 
     def _add_pose_in_link(
         self, xml: XmlElement, source: XmlElement, pose: Pose, link: str,

@@ -191,8 +191,7 @@ def robot_from_tree(root: XmlElement, sources: Sources, *, is_included: bool) ->
                 parent_joints[child] = joint._replace(name=new_name)
         if name in used:
             name = unused_name(f'{name}_model', used, '')
-    return Robot(
-        name, origin, list(in_order.values()), parent_joints, *_gazebo_elements_of(root))
+    return Robot(name, origin, list(in_order.values()), parent_joints, *_gazebo_elements_of(root))
 
 
 def _gazebo_elements_of(
@@ -291,8 +290,7 @@ def _joint(
     for each, definition in definition_of('urdf_joint').children.items():
         tag = str(each)
         part = first_child(xml, tag)
-        if part is None or (
-                tag == 'axis' and joint_type is not None and not joint_type.has_axis):
+        if part is None or (tag == 'axis' and joint_type is not None and not joint_type.has_axis):
             continue
         try:
             values[tag] = numbers_of_attributes(part, definition.attributes.values())
