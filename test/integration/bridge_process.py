@@ -71,27 +71,14 @@ class LoggedProcess:
         """Return the number of lines with a text so far."""
         return sum(text in line for line in self.lines)
 
-    def wait_for_signal(self, number, kind):
-        """Wait until the process blocks a signal, ``'SigBlk'``, or handles it, ``'SigCgt'``."""
-        self._wait_for_status(
-            lambda status: int(status[kind], 16) >> (number - 1) & 1, f'{kind} of signal {number}')
-
     def wait_until_sleeping(self):
         """Wait until the process waits for something itself."""
-        self._wait_for_status(lambda status: status['State'] == 'S', 'sleep')
-
-    def _wait_for_status(self, condition, what):
-        def has_come():
+        def is_sleeping():
             assert self._process.poll() is None, '\n'.join(self.lines)
-            return condition(self._status())
+            status = Path(f'/proc/{self.pid}/status').read_text(encoding='ascii')
+            return 'State:\tS' in status
 
-        wait_until(has_come, lambda: time.sleep(0.001), what)
-
-    def _status(self):
-        text = Path(f'/proc/{self.pid}/status').read_text(encoding='ascii')
-        return {
-            key: value.split()[0] for key, _, value in (
-                line.partition(':') for line in text.splitlines()) if value.strip()}
+        wait_until(is_sleeping, lambda: time.sleep(0.001), 'sleep')
 
     def children(self):
         """Return the ids of the processes that it has started."""

@@ -13,9 +13,11 @@ from command_line import CLOSED, executable_of_workspace, with_closed_streams
 import pytest
 from ros_domain import needs_fast_dds
 from rosgraph_msgs.msg import Clock
+from signal_places import with_signals_at
 from slow_file import SlowFile
 
 from sdf_pose_bridge.ros.node.middleware import PROFILES
+from sdf_pose_bridge.ros.node.process import PROGRAMS
 
 ((PROFILE, OTHER_VARIABLE),) = [
     (each, other.variable) for each in PROFILES for other in PROFILES
@@ -164,24 +166,16 @@ def test_a_negative_time_on_the_clock_does_not_end_it(start, start_listener):
     assert reload(listener).success
 
 
-@pytest.mark.skipif(
-    'LD_PRELOAD' in os.environ, reason='a library that is loaded before Python blocks them, too')
-@STOP_SIGNALS
-def test_a_signal_ends_it_well_before_anything_is_imported(start, number):
-    bridge = start()
-    # The first line of the executable does that; Python itself starts before.
-    bridge.wait_for_signal(number, 'SigBlk')
-    bridge.send(number)
-    assert_ended_well(bridge)
-
-
-@STOP_SIGNALS
-def test_a_signal_ends_it_well_before_anything_is_loaded(start, number):
-    bridge = start()
-    # Python itself handles SIGINT; with SIGTERM the bridge has taken over both.
-    bridge.wait_for_signal(signal.SIGTERM, 'SigCgt')
-    bridge.send(number)
-    assert_ended_well(bridge)
+@pytest.mark.parametrize('program', PROGRAMS)
+@pytest.mark.parametrize('place', [
+    'import sdf_pose_bridge', 'import numpy', 'import sdf_pose_bridge.ros.node.process',
+    'import rclpy', 'open {file}', 'import sdf_pose_bridge.ros.node.node'])
+def test_signals_end_it_well_at_each_place(
+        start, file, tmp_path, monkeypatch, program, place):
+    for name, value in with_signals_at(
+            place.format(file=file), [signal.SIGINT, signal.SIGTERM], tmp_path).items():
+        monkeypatch.setenv(name, value)
+    assert_ended_well(start(program=program))
 
 
 @STOP_SIGNALS

@@ -61,8 +61,10 @@ def _end_at_failure_of_hook(
 def _end_if_without_memory(failure: sys.UnraisableHookArgs) -> None:
     if failure.exc_type is MemoryError:
         end_without_memory()
-    what = failure.err_msg or 'exception ignored in'
-    _print_exception(f'{what} {failure.object!r}', failure.exc_value)
+    # While the interpreter ends, nothing can be imported, and nothing depends on the object.
+    if not sys.is_finalizing():
+        what = failure.err_msg or 'exception ignored in'
+        _print_exception(f'{what} {failure.object!r}', failure.exc_value)
 
 
 def _print_exception(sentence: str, error: BaseException | None) -> None:

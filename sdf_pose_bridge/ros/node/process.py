@@ -9,8 +9,7 @@ fails in many ways, and do not interrupt the reading of a file.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Collection, Mapping, Sequence
 import gc
 import os
 import re
@@ -55,7 +54,7 @@ LONGEST_STOP_S = 10.0
 """Time in s for the current work to end after a signal, before the process is ended."""
 
 _ENDING_PERIOD_S = 0.02
-"""Time in s between two looks whether it has ended."""
+"""Time in s between two looks whether something has ended."""
 
 
 class Program(NamedTuple):
@@ -148,10 +147,7 @@ def run(args: Sequence[str], program_name: str, reader: FileProcess) -> int:
         _complain(program, _sentence_from_ros_error(error))
         return 1
     node.get_logger().debug(line_from_text(sentence_about_profile))
-    try:
-        exit_code = _exit_code_from_node(node, program, reader, parameter_services, *words)
-    except KeyboardInterrupt:
-        exit_code = 0
+    exit_code = _exit_code_from_node(node, program, reader, parameter_services, *words)
     node.destroy_node()
     rclpy.try_shutdown()
     return exit_code
@@ -167,8 +163,10 @@ def _exit_code_from_node(
         publishers, request = Publishers(node), settings.load_request
         with reader.calling(request, loaded_scene, request) as call:
             publishers.opened(TF_STATIC)
-            with _interrupted_by_signals():
-                loaded = call.result()
+            while not call.has_ended(_ENDING_PERIOD_S):
+                if signal.sigpending().intersection(STOP_SIGNALS):
+                    return 0
+            loaded = call.result()
         check_number_of_topics(settings, loaded.joint_positions)
     except (SdfError, SettingsError, AddressError) as error:
         _log_warnings(node, [
@@ -195,22 +193,6 @@ def _exit_code_from_node(
     _spin_until_signal(executor, node, loader)
     executor.shutdown()
     return 0
-
-
-@contextmanager
-def _interrupted_by_signals() -> Iterator[None]:
-    """
-    Let signals interrupt the block.
-
-    :raises KeyboardInterrupt: if a signal comes, or came before.
-    """
-    for number in STOP_SIGNALS:
-        signal.signal(number, signal.default_int_handler)
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, STOP_SIGNALS)
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_BLOCK, STOP_SIGNALS)
 
 
 def _spin_until_signal(executor: SingleThreadedExecutor, node: Node, loader: Worker) -> None:

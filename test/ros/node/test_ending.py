@@ -51,6 +51,12 @@ def test_a_thread_that_fails_ends_the_process_with_a_traceback():
     assert lines[-2:] == [r'    ValueError: \x1b[2J', '    [FATAL] why']
 
 
+@pytest.mark.parametrize('module', ['builtins', 'sdf_pose_bridge.ros.log_lines', '__main__'])
+def test_objects_that_are_destroyed_when_python_ends_change_nothing(module):
+    done = ended(f'import {module}; {module}.kept = Fails()', 'ValueError')
+    assert (done.returncode, done.stdout, done.stderr) == (0, 'goes on\n', '')
+
+
 @pytest.mark.parametrize(('code', 'error'), [
     (IN_THREAD, 'SystemExit'), ('Fails()', r'ValueError("\x1b[2J")')])
 def test_other_ends_of_a_thread_and_defects_that_python_reports_end_nothing(code, error):
