@@ -24,7 +24,7 @@ URL = MANIFEST.findtext('url')
 LICENSE = MANIFEST.findtext('license')
 SHARE = f'share/{PACKAGE}'
 NOT_INSTALLED = ('__pycache__', '.pytest_cache', '.mypy_cache', '.ruff_cache')
-COMMAND_LINE = 'sdf_pose = sdf_pose_bridge.cli.main:main'
+COMMAND_LINE = 'sdf_pose = sdf_pose_bridge.__main__:main'
 # For `ros2 run`, which finds executables by the name of their package.
 ROS_EXECUTABLES = [
     COMMAND_LINE, 'bridge = sdf_pose_bridge.ros.node.bridge:main',
@@ -35,9 +35,6 @@ MAKES_A_WHEEL = not {'bdist_wheel', 'dist_info', 'editable_wheel'}.isdisjoint(sy
 if MAKES_A_WHEEL:
     # Modules that were deleted since an older build would be installed too.
     shutil.rmtree(ROOT / 'build/lib', ignore_errors=True)
-BLOCK_SIGNALS = (
-    'import signal',
-    'signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT, signal.SIGTERM])')
 
 
 def shared_folders() -> list[str]:
@@ -80,8 +77,8 @@ class InstallScripts(install_scripts):
     Writes the executables of a ROS workspace, which import what they call.
 
     Those of setuptools look their entry point up first, which takes longer than to read a file and
-    publish it. In that of the node signals wait, before anything is imported, until the function
-    that it calls handles them. A process that the program starts by multiprocessing imports the
+    publish it. In them signals wait, before anything is imported, until the function that they
+    call handles them. A process that the program starts by multiprocessing imports the
     executable, which does nothing then.
     """
 
@@ -93,8 +90,9 @@ class InstallScripts(install_scripts):
         module, function = entry.split(' = ')[1].split(':')
         first_line = contents.partition('\n')[0]
         program = (
-            *(BLOCK_SIGNALS if module.startswith(f'{PACKAGE}.ros.') else ()), 'import sys',
-            f'from {module} import {function}', f'sys.exit({function}())')
+            'import signal',
+            'signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT, signal.SIGTERM])',
+            'import sys', f'from {module} import {function}', f'sys.exit({function}())')
         lines = [
             first_line, '# PYTHON_ARGCOMPLETE_OK', "if __name__ == '__main__':",
             *(f'    {line}' for line in program), '']

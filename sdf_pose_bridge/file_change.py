@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 import contextlib
 from difflib import unified_diff
 import fcntl
@@ -13,8 +13,10 @@ from itertools import islice
 import os
 from pathlib import Path
 import shutil
+import signal
 import stat
 import tempfile
+import threading
 from typing import NamedTuple
 
 from sdf_pose_bridge.errors import FileWriteError, Place
@@ -132,8 +134,7 @@ def _refusal(path: Path, old: bytes | None, new: bytes, inputs: Iterable[str]) -
         if is_there:
             # The rename below would replace a read-only file too, so it is opened for writing.
             # Whatever else takes its place is not waited for, and not read.
-            file = stack.enter_context(
-                os.fdopen(os.open(path, os.O_RDWR | os.O_NONBLOCK), 'rb'))
+            file = stack.enter_context(os.fdopen(os.open(path, os.O_RDWR | os.O_NONBLOCK), 'rb'))
             status = os.fstat(file.fileno())
             if not stat.S_ISREG(status.st_mode):
                 return 'it is no regular file any more'
@@ -142,6 +143,7 @@ def _refusal(path: Path, old: bytes | None, new: bytes, inputs: Iterable[str]) -
                 return (f'the file has {status.st_nlink} names (hard links), and the others would '
                         'keep the old text; copy it first, or change it by an editor')
         path = path.resolve()
+        stack.enter_context(signals_wait())
         # A directory of its own, as the standard library removes it after any exception.
         new_path = Path(stack.enter_context(
             tempfile.TemporaryDirectory(prefix='.sdf_pose_', dir=path.parent)), path.name)
@@ -165,6 +167,31 @@ def _refusal(path: Path, old: bytes | None, new: bytes, inputs: Iterable[str]) -
             return 'the file has changed since it was read, so it is not overwritten'
         new_path.replace(path)
     return ''
+
+
+@contextlib.contextmanager
+def signals_wait() -> Iterator[list[int]]:
+    """
+    Let signals that would end the process at once end it after the block, which removes its files.
+
+    Signals that are handled or ignored, and all in another thread than the first one, do not wait.
+
+    :return: a context manager with the signals that have come.
+    """
+    came: list[int] = []
+    numbers = [
+        number for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+        if signal.getsignal(number) is signal.SIG_DFL
+        and threading.current_thread() is threading.main_thread()]
+    for number in numbers:
+        signal.signal(number, lambda number, _: came.append(number))
+    try:
+        yield came
+    finally:
+        for number in numbers:
+            signal.signal(number, signal.SIG_DFL)
+        if came:
+            signal.raise_signal(came[0])
 
 
 def _is_one_of(path: Path, *others: str) -> bool:

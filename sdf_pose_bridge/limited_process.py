@@ -226,7 +226,7 @@ class Call(Generic[_Result]):
 def _serve(calls: socket.socket, prepare: Callable[[], None]) -> NoReturn:
     """Fork for each call that comes, and report its end, until no more can come."""
     try:
-        _end_with_parent()
+        end_with_parent()
         # Others may have been ignored or blocked when this program was started.
         for number in (signal.SIGCHLD, signal.SIGXCPU):
             signal.signal(number, signal.SIG_DFL)
@@ -300,7 +300,7 @@ def _answer_call(file: BinaryIO, status: socket.socket) -> NoReturn:
     """Read a call from a file, write the answer into it, report this, and end the process."""
     code = 1
     try:
-        _end_with_parent()
+        end_with_parent()
         # This fails if the caller, which does not know this process, waits no longer.
         status.send(pickle.dumps((os.getpid(), None)))
         with contextlib.suppress(OSError), open('/proc/self/oom_score_adj', 'w') as score:  # noqa: PTH123
@@ -334,6 +334,6 @@ def _answer(
             return pickle.dumps((None, RuntimeError(repr(error)), text), 5)
 
 
-def _end_with_parent() -> None:
+def end_with_parent() -> None:
     """Have the kernel end this process with its parent, also while it is busy or stopped."""
     ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)

@@ -6,6 +6,7 @@ import difflib
 import fcntl
 import os
 import random
+import re
 import resource
 import signal
 import stat
@@ -13,6 +14,7 @@ import struct
 import subprocess
 import sys
 
+from command_line import completed
 from processes import started
 import pytest
 
@@ -264,3 +266,57 @@ def test_a_killed_process_leaves_the_old_file_or_the_new_one(path):
         process.send_signal(signal.SIGKILL)
         process.communicate()
         assert path.read_bytes() in (b'old' + rest, b'new' + rest)
+
+
+AT_EACH_LINE = """
+from itertools import count, cycle
+import os
+from pathlib import Path
+import signal
+import sys
+
+from sdf_pose_bridge.file_change import replace_file
+
+path, old, new = Path(sys.argv[1]), b'the old text', b'the new text'
+modules = 'file_change', 'contextlib', 'tempfile', 'shutil'
+numbers = signal.SIGINT, signal.SIGTERM, signal.SIGHUP
+for number in numbers:
+    signal.signal(number, signal.SIG_DFL)
+# Nothing here depends on the disk, which is slow.
+os.fsync = lambda _: None
+
+
+def end_at_line(last, number):
+    lines = count()
+
+    def trace(frame, event, _value):
+        if Path(frame.f_code.co_filename).stem not in modules:
+            return None
+        if event == 'line' and next(lines) == last:
+            os.kill(os.getpid(), number)
+        return trace
+
+    sys.settrace(trace)
+    replace_file(str(path), old, new)
+    sys.settrace(None)
+    os._exit(1 if next(lines) > last else 0)
+
+
+for last, number in zip(count(), cycle(numbers)):
+    path.write_bytes(old)
+    pid = os.fork() or end_at_line(last, number)
+    code = os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
+    if code == 0:
+        break
+    result = code, os.listdir(path.parent), path.read_bytes()
+    if result not in [(-number, [path.name], text) for text in (old, new)]:
+        sys.exit(f'{result} at line {last}')
+print('ended at', last, 'lines')
+"""
+"""Has each process get a signal at another line of Python that replaces a file."""
+
+
+def test_a_signal_at_any_line_leaves_a_whole_file_alone(path):
+    done = completed([sys.executable, '-c', AT_EACH_LINE, str(path)])
+    assert done.stderr == ''
+    assert re.fullmatch(r'ended at \d{3,} lines\n', done.stdout)

@@ -217,7 +217,7 @@ def test_a_process_that_ends_before_it_begins_is_an_error(function, message):
         faulthandler.disable()
         eval(function)
 
-    process = LimitedProcess(lambda: setattr(limited_process, '_end_with_parent', fail))
+    process = LimitedProcess(lambda: setattr(limited_process, 'end_with_parent', fail))
     with pytest.raises(ProcessEndedError, match=message):
         process.call(AMPLE, pow, 2, 2)
     process.close()

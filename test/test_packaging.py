@@ -162,11 +162,11 @@ def scripts(tmp_path_factory):
 
 
 @pytest.mark.parametrize('name', ['bridge', 'robot_state_publisher', 'sdf_pose'])
-def test_scripts_are_marked_for_completion_and_the_node_blocks_signals_first(name, scripts):
+def test_scripts_are_marked_for_completion_and_block_signals_first(name, scripts):
     _, mark, _, *lines = map(str.strip, (scripts / name).read_text().splitlines())
     assert mark == '# PYTHON_ARGCOMPLETE_OK'
     blocks = [line.startswith('signal.pthread_sigmask(signal.SIG_BLOCK, ') for line in lines[:2]]
-    assert blocks == [False, name != 'sdf_pose']
+    assert blocks == [False, True]
 
 
 @pytest.mark.parametrize('verb', COLCON_VERBS)

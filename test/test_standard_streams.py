@@ -2,27 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every program with standard streams closed and SIGCHLD ignored, as a parent may leave them."""
 
-import argparse
 import subprocess
 import sys
 
 from command_line import CLOSED, COMMAND, completed, with_closed_streams
+from commands import ARGUMENTS, COMMANDS
 import pytest
 from sdf_texts import link_with
-
-from sdf_pose_bridge.cli.main import new_parser
-
-PARSER = new_parser()
-COMMANDS = next(
-    each.choices for each in PARSER._actions if isinstance(each, argparse._SubParsersAction))
-
-ARGUMENTS = {
-    **{name: ['m.sdf'] for name in ('check', 'poses', 'tree', 'graph', 'urdf', 'gz_bridge')},
-    'view': ['m.sdf', '-o', 'page.html'], 'diff': ['m.sdf', 'm.sdf'],
-    'convert': ['--from', 'sdf_rpy', '--to', 'sdf_quat_xyzw'],
-    'set': ['m.sdf', 'm::l', '1', '0', '0', '0', '0', '0', '--dry-run'],
-}
-"""Arguments of each command; it reads nothing else."""
 
 LOAD = 'import sdf_pose_bridge, sys; sys.exit(len(sdf_pose_bridge.load("m.sdf").names) != 4)'
 

@@ -28,6 +28,7 @@ from sdf_pose_bridge.cli.arguments import (
 from sdf_pose_bridge.cli.input_files import scene_of
 from sdf_pose_bridge.cli.printing import CommandError, write_text
 from sdf_pose_bridge.file_change import replace_file
+from sdf_pose_bridge.limited_process import end_with_parent
 from sdf_pose_bridge.printed_text import printable, shortened
 from sdf_pose_bridge.process_limits import lift_limits
 from sdf_pose_bridge.scene.scene import Scene
@@ -157,8 +158,13 @@ def _write(text: str, path: Path | None, inputs: Sequence[str]) -> None:
         raise CommandError(msg)
     done = subprocess.run(
         ['dot', f'-T{path.suffix[1:].lower()}'],
-        input=text.encode(), capture_output=True, check=False, preexec_fn=lift_limits)
+        input=text.encode(), capture_output=True, check=False, preexec_fn=_prepare_dot)
     if done.returncode:
         msg = f'dot cannot draw the graph: {done.stderr.decode(errors="replace").strip()}'
         raise CommandError(msg)
     replace_file(str(path), None, done.stdout, inputs)
+
+
+def _prepare_dot() -> None:
+    lift_limits()
+    end_with_parent()

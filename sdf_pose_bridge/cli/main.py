@@ -1,6 +1,5 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-# PYTHON_ARGCOMPLETE_OK
 """The command line ``sdf_pose``: a parser with one subcommand for each module of this room."""
 
 from __future__ import annotations
@@ -40,8 +39,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Run a command.
 
     :param arguments: the arguments after the name of the program; by default from ``sys.argv``.
-    :return: exit code: 0 for success, 1 if a file or a value is wrong, 2 if the arguments are, 130
-        after Ctrl-C.
+    :return: exit code: 0 for success, 1 if a file or a value is wrong, 2 if the arguments are.
     """
     parser = new_parser()
     options = parser.parse_args(arguments)
@@ -78,8 +76,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         reason = f'this needs {error}'
     except MemoryError:
         reason = 'there is not enough memory'
-    except KeyboardInterrupt:
-        return 130
     else:
         return code
     print_message(options.command, reason)

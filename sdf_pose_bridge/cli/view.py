@@ -14,7 +14,6 @@ from pathlib import Path
 import re
 import shlex
 import shutil
-import signal
 import subprocess
 import sys
 import sysconfig
@@ -36,7 +35,7 @@ from sdf_pose_bridge.cli.printing import CommandError, print_problems
 from sdf_pose_bridge.cli.viewer import LIBRARIES, UntestedViserError
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.export.pose_setting import pose_change
-from sdf_pose_bridge.file_change import replace_file
+from sdf_pose_bridge.file_change import replace_file, signals_wait
 from sdf_pose_bridge.file_watcher import FileWatcher
 from sdf_pose_bridge.geometry.units import Units
 from sdf_pose_bridge.limited_process import LimitedProcess
@@ -64,7 +63,7 @@ _BROWSER_OPTIONS = (
     '--virtual-time-budget=10000', '--run-all-compositor-stages-before-draw')
 _ONLY_THE_SCENE = ('<style>body :not(canvas, :has(canvas)) {visibility: hidden} '
                    '.labels div {visibility: visible}</style>')
-_MOST_SECONDS = 300.0
+_MOST_SECONDS, _LONGEST_END_S = 300.0, 5.0
 
 HELP = 'show frames and shapes in 3D'
 DESCRIPTION = (
@@ -95,8 +94,6 @@ def run(options: argparse.Namespace) -> int:
         msg = 'the standard input cannot be changed, as --edit would; name a file'
         raise CommandError(msg)
     viewer = _viewer()
-    # Otherwise a browser that draws a picture would outlive this process.
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
     # It is made before the server starts threads, and its own standard streams lead nowhere.
     read = partial(scene_from_file, shapes=True, terminal=os.dup(2))
     with contextlib.closing(LimitedProcess()) as process:
@@ -227,17 +224,28 @@ def _picture(page: str, output: Path) -> bytes:
     if browser is None:
         msg = 'a picture needs Chrome or Chromium; a file that ends with .html does not'
         raise FileNotFoundError(msg)
-    # A browser of snap has a /tmp of its own, and does not see hidden folders. Other processes of
-    # the browser may still write after the first one has ended.
-    with tempfile.TemporaryDirectory(
+    # A browser of snap has a /tmp of its own, and does not see hidden folders. Others leave files
+    # there. Other processes of a browser may still write after the first one has ended.
+    with signals_wait() as signals, tempfile.TemporaryDirectory(
             prefix='sdf_pose_view_', dir=output.absolute().parent,
-            ignore_cleanup_errors=True) as folder:
+            ignore_cleanup_errors=True) as folder, tempfile.TemporaryDirectory(
+            ignore_cleanup_errors=True) as other_folder:
         source, picture = Path(folder, 'page.html'), Path(folder, 'picture.png')
         source.write_text(page + _ONLY_THE_SCENE, encoding='utf-8')
         command = [browser, *_BROWSER_OPTIONS, f'--user-data-dir={folder}',
                    f'--screenshot={picture}', source.as_uri()]
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            subprocess.run(command, capture_output=True, check=False, timeout=_MOST_SECONDS)
+        ends_at = time.monotonic() + _MOST_SECONDS
+        with subprocess.Popen(
+                command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                env={**os.environ, 'TMPDIR': other_folder}) as process:
+            while process.poll() is None and not signals and time.monotonic() < ends_at:
+                time.sleep(_PERIOD_S)
+            # It ends its other processes, unless it is killed.
+            process.terminate()
+            try:
+                process.wait(_LONGEST_END_S)
+            except subprocess.TimeoutExpired:
+                process.kill()
         if picture.exists():
             return picture.read_bytes()
     msg = (f'{browser} wrote no picture into that folder; a browser of snap, as on Ubuntu, writes '

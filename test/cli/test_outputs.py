@@ -11,15 +11,11 @@ import os
 import stat
 from threading import Thread
 
+from commands import COMMANDS
 from deadline import DEADLINE_S
 import pytest
 from sdf_texts import LINK, model_file
 
-from sdf_pose_bridge.cli.main import new_parser
-
-COMMANDS = next(
-    action.choices for action in new_parser()._actions
-    if isinstance(action, argparse._SubParsersAction))
 GIVEN = {'FILE': ['cell'], 'OLD': ['cell'], 'NEW': ['cell'], 'FRAME': ['m'], 'NUMBER': ['0'] * 6}
 """Values of the arguments that are no options; "cell" is the file that is read."""
 

@@ -5,6 +5,7 @@
 from importlib.metadata import version
 import os
 import re
+import signal
 import socket
 import sys
 from threading import Event
@@ -12,7 +13,7 @@ from types import SimpleNamespace
 from urllib.parse import urlsplit
 import webbrowser
 
-from command_line import completed
+from command_line import COMMAND, completed, ENVIRONMENT
 from folders import ROOT
 import mesh_texts
 import needs
@@ -96,6 +97,32 @@ def test_picture_by_a_browser_that_does_not_reach_all_folders(
     assert (done.returncode, reason in done.stderr) == (int(not is_reached), not is_reached)
 
 
+# It ends the command, and writes files until it is ended itself.
+ENDING_ITS_PARENT = """#!/bin/sh
+trap 'exit 0' TERM
+for word; do case $word in --user-data-dir=*) folder=${word#*=};; esac; done
+touch "$TMPDIR/left"
+kill -%d "$PPID"
+while :; do touch "$folder/left" || exit 1; done
+"""
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_while_a_picture_is_drawn_ends_the_browser_and_leaves_nothing(
+        files, tmp_path_factory, number):
+    pytest.importorskip('viser', reason='needs viser')
+    folders = [tmp_path_factory.mktemp(name) for name in ('bin', 'temporary')]
+    needs.executables_in(folders[0])
+    browser, before = folders[0] / 'chromium', {*files.iterdir()}
+    browser.write_text(ENDING_ITS_PARENT % number)
+    browser.chmod(0o755)
+    done = completed([*COMMAND, 'view', 'good.sdf', '-o', 'page.png'], cwd=files, env={
+        **ENVIRONMENT, 'PATH': f'{folders[0]}:{os.defpath}', 'TMPDIR': str(folders[1])})
+    assert (done.returncode, done.stdout, done.stderr) == (-number, '', '')
+    assert {*files.iterdir()} == before
+    assert not [*folders[1].iterdir()]
+
+
 def test_page_has_a_title_and_needs_no_network(run_main, files):
     done = run_main('view', 'good.sdf', '-o', 'page.html')
     assert (done.returncode, done.stdout, done.stderr) == (0, '', '')
@@ -128,7 +155,7 @@ def test_page_opens_in_the_browser(run_main, monkeypatch):
     opened = []
 
     def stop(*_):
-        raise KeyboardInterrupt
+        raise SystemExit(0)
 
     monkeypatch.setattr(webbrowser, 'open', lambda uri: bool(opened.append(uri)))
     monkeypatch.setattr('sdf_pose_bridge.cli.view._follow', stop)
@@ -136,7 +163,7 @@ def test_page_opens_in_the_browser(run_main, monkeypatch):
     assert re.fullmatch(
         r'open http://127\.0\.0\.1:[0-9]+/[\w-]+/ in a browser; Ctrl-C ends this program\n',
         done.stdout)
-    assert (done.returncode, opened, done.stderr) == (130, [done.stdout.split()[1]], '')
+    assert (done.returncode, opened, done.stderr) == (0, [done.stdout.split()[1]], '')
     port = urlsplit(opened[0]).port
     with socket.create_server(('127.0.0.1', port)):
         done = run_main('view', 'good.sdf', '--port', str(port))

@@ -37,8 +37,6 @@ _ADDRESS = '127.0.0.1'
 _HOSTS = r'(127\.0\.0\.1|localhost)(:[0-9]+)?'
 _PAGE_OF_VISER = Path(viser.__file__).parent / 'client/build/index.html'
 _TITLE = '<title>Viser</title>'
-_LONGEST_HANDSHAKE_S = 3.0
-"""A browser opens connections in advance, and the server does not end before these."""
 
 
 class Events:
@@ -140,8 +138,7 @@ def server_for_its_owner(
 
     def guarded_serve(*arguments: Any, **options: Any) -> Any:
         guarded.append(answer)
-        return serve(*arguments, **{
-            **options, 'process_request': answer, 'open_timeout': _LONGEST_HANDSHAKE_S})
+        return serve(*arguments, **{**options, 'process_request': answer})
 
     # viser has no hook for this, so it replaces the function by which viser starts its server.
     # After viser has accepted a connection, it would be too late for earlier requests.

@@ -5,7 +5,6 @@
 import html
 from http import HTTPStatus
 import re
-from socket import create_connection
 from threading import Event
 from urllib.request import urlopen
 
@@ -17,7 +16,6 @@ from websockets.asyncio import server as websockets_server
 from websockets.datastructures import Headers
 from websockets.http11 import Request
 
-from sdf_pose_bridge.cli.viewer import server as server_module
 from sdf_pose_bridge.cli.viewer.frame_texts import html_of_data
 from sdf_pose_bridge.cli.viewer.server import (
     key_of_file,
@@ -85,14 +83,6 @@ def test_each_start_has_its_own_secret():
     assert [each.is_set() for each in was_asked] == [True, False]
     assert len(secrets) == 2
     assert all(len(secret) > 20 for secret in secrets)
-
-
-def test_connection_that_is_opened_in_advance_does_not_keep_it_from_ending(monkeypatch):
-    monkeypatch.setattr(server_module, '_LONGEST_HANDSHAKE_S', 0.1)
-    server, _ = server_for_its_owner(0, 'a', 'a.sdf', Event())
-    with create_connection(('127.0.0.1', server.get_port()), timeout=DEADLINE_S) as connection:
-        assert connection.recv(1) == b''
-    server.stop()
 
 
 def test_secret_depends_on_the_port_where_another_program_may_listen_later():
