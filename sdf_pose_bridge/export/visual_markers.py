@@ -110,7 +110,13 @@ def visual_markers_from_scene(
                 pose=pose_product(pose, marker.pose), frame_id=frame_id, namespace=namespace,
                 rgba=shape.drawn_rgba)
             for marker in found]
-    for (*_, reason), (element, *others) in hidden.items():
+    groups: dict[tuple[object, ...], list[tuple[int, str]]] = {}
+    for (file, line, reason), elements in hidden.items():
+        # Meshes of one package or folder are missing for one reason.
+        _, is_missing, cause = reason.partition('" is not found')
+        group = groups.setdefault((file, cause) if is_missing else (file, line, reason), [])
+        group += [(element, reason) for element in elements]
+    for (element, reason), *others in groups.values():
         like = f', like {len(others)} more' if others else ''
         msg = f'the visual "{scene.names[element]}" is not shown{like}: {reason}'
         problems.warning(msg, scene.place(element))

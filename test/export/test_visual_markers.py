@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Markers of visuals: which there are, in which frame, and what they look like."""
 
+import re
+
 import pytest
 from sdf_texts import link_with, model_file, world_file
 from tf_checks import model
@@ -10,7 +12,11 @@ from sdf_pose_bridge import load_text
 from sdf_pose_bridge.export import visual_markers
 from sdf_pose_bridge.export.published_scene import fingerprint_of_scene, LoadRequest
 from sdf_pose_bridge.export.scene_from_request import loaded_scene_from_request
-from sdf_pose_bridge.export.visual_markers import markers_from_text, visual_markers_from_scene
+from sdf_pose_bridge.export.visual_markers import (
+    markers_from_text,
+    MOST_PROBLEMS,
+    visual_markers_from_scene,
+)
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.limits import MissingInclude
@@ -68,11 +74,23 @@ def test_visual_that_cannot_be_shown_has_a_warning(geometry, reason):
 
 def test_visual_of_many_instances_has_one_warning():
     models = [
-        model(name, f'<link name="l">{visual(MESH.format("none.stl", ""))}</link>')
+        model(name, f'<link name="l">{visual("<sphere><radius>0</radius></sphere>")}</link>')
         for name in ('a', 'b', 'c', '\nd')]
     _, (warning, _) = markers_and_warnings(world_file(''.join(models)))
     assert warning.message.startswith(
-        'the visual "a::l::v" is not shown, like 2 more: the mesh "none.stl" is not found: ')
+        'the visual "a::l::v" is not shown, like 2 more: its sizes are not positive')
+
+
+@pytest.mark.parametrize(('uri', 'count', 'lines'), [
+    ('model://none/{}.stl', 12, 1), ('none/{}.stl', 3 * MOST_PROBLEMS, 2),
+    ('https://none.org/{}.stl', 3, 3)])
+def test_meshes_that_are_missing_for_one_reason_have_one_warning(uri, count, lines):
+    content = ''.join(visual(MESH.format(uri.format(number), ''), name=f'v{number}')
+                      for number in range(count))
+    _, warnings = markers_and_warnings(link_with(content))
+    assert len(warnings) == lines
+    others = re.findall(r'is not shown, like (\d+) more: the mesh ', ' '.join(map(str, warnings)))
+    assert lines + sum(map(int, others)) == count
 
 
 def test_visual_whose_link_has_no_frame_has_a_warning():
