@@ -83,7 +83,7 @@ def _doubts_about_shapes(scene: Scene, resource_paths: Sequence[str]) -> tuple[S
     for uri, file in waiting:
         # Most missing files are in missing folders, of which there are fewer. Each model of Fuel
         # is fetched by itself.
-        folders = [] if uri.lower().startswith('http') else [
+        folders = [uri.partition('/files/')[0]] if uri.lower().startswith('http') else [
             uri[:end.start()] for end in _END_OF_FOLDER.finditer(uri)]
         part = next((each for each in folders if path_from_uri(each, file) is None), uri)
         if part != uri or finder.file_from_uri(uri, file) is None:

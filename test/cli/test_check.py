@@ -124,7 +124,8 @@ def test_a_second_world_is_a_warning(run_main, files):
 @pytest.mark.parametrize(('folder', 'missing'), [
     ('package://p', '"package://p": no package "p" is installed'),
     ('package://p/q', '"package://p": no package'), ('p', '"p": '), ('file://p/q', '"file://p": '),
-    ('a/q', '"a/q": '),
+    ('a/q', '"a/q": '), ('https://x.org/1.0/o/models/b/tip/files/q',
+                         '"https://x.org/1.0/o/models/b/tip": it is not in the cache of'),
 ])
 def test_meshes_of_a_missing_folder_are_one_warning(folder, missing, lines_of, files):
     (files / 'a').mkdir()

@@ -83,7 +83,8 @@ def test_visual_of_many_instances_has_one_warning():
 
 @pytest.mark.parametrize(('uri', 'count', 'lines'), [
     ('model://none/{}.stl', 12, 1), ('none/{}.stl', 3 * MOST_PROBLEMS, 2),
-    ('https://none.org/{}.stl', 3, 3)])
+    ('https://none.org/me/models/{}/files/a.stl', 3, 3),
+    ('https://none.org/me/models/a/files/{}.stl', 3, 1)])
 def test_meshes_that_are_missing_for_one_reason_have_one_warning(uri, count, lines):
     content = ''.join(visual(MESH.format(uri.format(number), ''), name=f'v{number}')
                       for number in range(count))

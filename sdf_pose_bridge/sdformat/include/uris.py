@@ -27,6 +27,9 @@ from sdf_pose_bridge.sdformat.templates import hint_about_missing_file
 _SCHEME = re.compile(r'([A-Za-z][A-Za-z0-9+.-]*)://')
 _SCHEME_OF_ADDRESS = re.compile(r'[A-Za-z][A-Za-z0-9+.-]+(?=:/)')
 _WEB = ('http', 'https')
+_FUEL_MODEL = re.compile(
+    r'(?i)https?://[^/]+/([0-9]+[.][0-9]+/)?[^/]+/models/[^/]+(/([0-9]+|tip))?(?=/|$)')
+"""The address of a model, which alone can be fetched, at the beginning of that of a file in it."""
 _FUEL_HOSTS = ('fuel.gazebosim.org', 'fuel.ignitionrobotics.org', 'app.gazebosim.org')
 """Names of one server; Gazebo's cache has its models under the first, and older ones elsewhere."""
 _SHARED = ('model', 'package')
@@ -179,9 +182,11 @@ class ResourceFinder(NamedTuple):
         """
         scheme, name = _scheme_and_name(uri)
         if scheme in _WEB:
+            reason, model = 'it is not in the cache of Gazebo Fuel', _FUEL_MODEL.match(uri)
             # A longer message would be cut in its middle.
-            command = ['gz', 'fuel', 'download', '-u', uri if len(uri) <= _LONGEST_URI else 'URI']
-            return f'it is not in the cache of Gazebo Fuel; fetch it with: {shlex.join(command)}'
+            address = model[0] if model and len(model[0]) <= _LONGEST_URI else 'URI'
+            command = shlex.join(['gz', 'fuel', 'download', '-u', address])
+            return f'{reason}; fetch it with: {command}' if model else reason
         if uri in _MODELS_OF_GAZEBO_CLASSIC:
             return 'it comes with Gazebo Classic, and no frame needs it'
         folder, missing = self._deepest_folder(uri, including_file)
