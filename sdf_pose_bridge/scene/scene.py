@@ -140,7 +140,11 @@ class Scene(ReadOnly):
     @property
     def is_urdf(self) -> bool:
         """Whether the file or the text itself is URDF."""
-        return self.source_format is SourceFormat.URDF
+        match self.source_format:
+            case SourceFormat.URDF:
+                return True
+            case SourceFormat.SDFORMAT:
+                return False
 
     def __repr__(self) -> str:
         return f'<Scene of {self.path}: {len(self.names)} elements>'

@@ -53,11 +53,7 @@ EULER_RPY = PoseFormat()
 
 
 def pose_format_of(xml: XmlElement) -> PoseFormat:
-    """
-    Read the format of a ``<pose>``.
-
-    :raises PoseTextError: if ``rotation_format`` or ``degrees`` is not valid.
-    """
+    """Read the format of a ``<pose>``; raise PoseTextError if it has an invalid attribute."""
     return pose_format_from_attributes(
         **{name: attribute_of(xml, name) for name in FORMAT_ATTRIBUTES})
 

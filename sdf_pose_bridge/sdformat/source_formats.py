@@ -12,24 +12,20 @@ from sdf_pose_bridge.sdformat.xml_tree import written_tag, XmlElement
 
 class SourceFormat(enum.Enum):
     """
-    The format of a file: its name, and the tag of the outermost element.
+    The format of a file: its name, the tag of the outermost element, and the end of file names.
 
     Of several outermost elements, the one of the first format is read.
     """
 
-    SDFORMAT = 'SDFormat', 'sdf'
-    URDF = 'URDF', 'robot'
+    SDFORMAT = 'SDFormat', 'sdf', '.sdf'
+    URDF = 'URDF', 'robot', '.urdf'
 
-    def __init__(self, title: str, tag: str) -> None:
-        self.title, self.tag = title, tag
+    def __init__(self, title: str, tag: str, suffix: str) -> None:
+        self.title, self.tag, self.suffix = title, tag, suffix
 
 
 def source_format_of(root: XmlElement, place: Place) -> SourceFormat:
-    """
-    Return the format of a file by its outermost element.
-
-    :raises ParsingError: if no format has such an element.
-    """
+    """Return the format of a file by its outermost element; raise ParsingError for others."""
     for each in SourceFormat:
         if root.tag == each.tag:
             return each

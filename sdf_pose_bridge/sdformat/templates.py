@@ -149,7 +149,7 @@ def _refuse_xacro(root: XmlElement, path: str, sources: Sources) -> None:
         if found:
             target = name.removesuffix('.xacro')
             if not Path(target).suffix:
-                target += '.sdf' if is_sdf else '.urdf'
+                target += next((each.suffix for each in SourceFormat if each.tag == root.tag), '')
             while target == name or os.path.exists(Path(path).parent / target):  # noqa: PTH110
                 target = f'expanded_{target}'
             command = f': {shlex.join(["xacro", name, "-o", target])}' if '.' in name else ''
