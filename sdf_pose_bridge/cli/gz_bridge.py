@@ -15,8 +15,7 @@ from sdf_pose_bridge.cli.arguments import add_file_arguments, add_output_argumen
 from sdf_pose_bridge.cli.input_files import doubts_about_frames, scene_of, STANDARD_INPUT
 from sdf_pose_bridge.cli.printing import CommandError, print_problems, write_text
 from sdf_pose_bridge.errors import SdfError, SdfWarning
-from sdf_pose_bridge.export.gazebo_bridge import followed_topics, node_parameters
-from sdf_pose_bridge.export.published_scene import LoadRequest
+from sdf_pose_bridge.export.gazebo_bridge import followed_topics
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.nearest_names import hint_from_names
 from sdf_pose_bridge.printed_text import printable
@@ -69,14 +68,16 @@ def run(options: argparse.Namespace) -> int:
     print_problems((), (*doubts_about_frames(scene, tf_options), *doubts, *_doubts_about_ids(
         topics, scene_of_gazebo, scene, tf_options._replace(kinds=None))), sys.stderr)
     if options.node:
-        request = LoadRequest(
-            '' if path == STANDARD_INPUT else str(Path(path).absolute()), '',
-            tuple(Path(each).absolute() for each in options.resource_paths),
-            MissingInclude.SKIP if options.skip_missing else MissingInclude.ERROR,
-            model_name='' if scene.world_names else scene.names[1])
-        parameters = node_parameters(request, followed_topics(topics, world))
+        parameters = {
+            'use_sim_time': True,
+            'sdf_file': '' if path == STANDARD_INPUT else str(Path(path).absolute()),
+            'resource_paths': [str(Path(each).absolute()) for each in options.resource_paths],
+            'on_missing_include': MissingInclude.SKIP.value if options.skip_missing else '',
+            'model_name': '' if scene.world_names else ''.join(scene.names[1:2]),
+            **followed_topics(scene_of_gazebo, topics, world)}
         lines = ['/**:', '  ros__parameters:', *(
-            f'    {name}: {_yaml_from_value(value)}' for name, value in parameters.items())]
+            f'    {name}: {_yaml_from_value(value)}'
+            for name, value in parameters.items() if value)]
     else:
         lines = [line for each in topics for line in _lines(each)]
     write_text('\n'.join(lines) + '\n', options.output, scene.files)
@@ -134,5 +135,4 @@ def _lines(bridged: BridgedTopic) -> Iterator[str]:
 
 def _yaml_from_value(value: object) -> str:
     # YAML has the escapes of JSON and of Python in double quotes.
-    return printable(json.dumps(
-        value, ensure_ascii=False, default=lambda each: getattr(each, 'value', str(each))))
+    return printable(json.dumps(value, ensure_ascii=False))

@@ -4,53 +4,51 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Collection, Mapping, Sequence
 
-from sdf_pose_bridge.export.published_scene import LoadRequest
+from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.gazebo_topics import GROUPS, is_true
 from sdf_pose_bridge.tf.bridged_topics import BridgedTopic
+from sdf_pose_bridge.tf.joint_positions import leading_dofs
+from sdf_pose_bridge.tf.parents import tf_parents_from_scene
 
 
-class FollowedTopics(NamedTuple):
-    """Parameters of the node for the messages that it follows, with their default values."""
-
-    use_joint_states: bool = False
-    joint_states_topics: Sequence[str] = ('joint_states', '{model}/joint_states')
-    model_pose_topics: Sequence[str] = ()
-    model_pose_frames: Sequence[str] = ()
-
-
-def node_parameters(request: LoadRequest, followed: FollowedTopics) -> dict[str, object]:
-    """Return the parameters of the node that differ from their default values, by their names."""
-    return {'use_sim_time': True} | {
-        name: value for record in (request, followed) for name, value in record._asdict().items()
-        if value != record._field_defaults.get(name, '')}
-
-
-def followed_topics(topics: Sequence[BridgedTopic], world: str = '') -> FollowedTopics:
+def followed_topics(
+    scene: Scene, topics: Sequence[BridgedTopic], world: str = '',
+) -> dict[str, object]:
     """
-    Choose the topics that the node follows.
+    Choose the topics that the node follows; patterns if they are about all that moves.
 
     :param world: the world in Gazebo, for a model file.
+    :return: parameters of the node by their names; what is empty is not set.
     """
-    joints = {each.pattern for each in topics if each.topic.group == 'joints'}
+    joints = {model: each for each in topics if each.topic.group == 'joints'
+              for model in each.models}
     sources = sorted(
-        (each for each in topics if each.places_model),
+        (each for each in topics if each.models and each.topic.group != 'joints'),
         # Before Harmonic 8.10, PosePublisher needs this option for the pose of its own model, too.
         key=lambda each: (
             bool(each.doubt), each.topic.is_of_wheels, each.topic.group == 'poses' and not is_true(
                 each.owners[0].values, 'publish_nested_model_pose'),
             GROUPS.index(each.topic.group)))
-    followed = {each.owners[0].free_model: each for each in reversed(sources)}
-    # A pattern must not name the second source of another model.
-    others = {each.pattern for each in sources
-              if each is not followed[each.owners[0].free_model]}
-    poses = {each.ros_name if each.pattern in others else each.pattern
-             for each in followed.values()}
-    has_poses = any(each.topic.group == 'poses' for each in followed.values())
-    return FollowedTopics(
-        use_joint_states=bool(joints),
-        joint_states_topics=tuple(sorted(joints)) or FollowedTopics().joint_states_topics,
-        model_pose_topics=tuple(sorted(poses)),
-        model_pose_frames=(world,) if world and has_poses else ())
+    poses = {model: each for each in reversed(sources) for model in each.models}
+    chosen = {each.ros_name for each in poses.values()}
+    others = {each.pattern for each in sources if each.ros_name not in chosen}
+    models = tf_parents_from_scene(scene).with_free_models(scene).free_models.values()
+    has_poses = any(each.topic.group == 'poses' for each in poses.values())
+    return {
+        'use_joint_states': bool(joints),
+        'joint_states_topics': _names(joints, {
+            scene.parents.item(each.joint.element) for each in leading_dofs(scene)}),
+        'model_pose_topics': _names(poses, models, others),
+        'model_pose_frames': [world] if world and has_poses else []}
+
+
+def _names(
+    topics: Mapping[int, BridgedTopic], models: Collection[int], others: Collection[str] = (),
+) -> list[str]:
+    # A pattern must not name a topic of other models, or a second source of a model.
+    patterns = {each.pattern for each in topics.values()}
+    are_all = topics.keys() >= {*models} and all(each.model for each in topics.values())
+    return sorted(patterns if are_all and patterns.isdisjoint(others) else {
+        each.ros_name for each in topics.values()})

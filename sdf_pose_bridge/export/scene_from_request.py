@@ -42,15 +42,15 @@ def loaded_scene_from_request(
     path, manifest, warnings = _file_from_request(request)
     text = bytes_from_file(path, Usage()) if request.sdf_file else request.robot_description
     makes_urdf = request.description_format is DescriptionFormat.URDF
+    options = request.tf_options
     scene = load_text(
         text, path, resource_paths=request.resource_paths,
         on_missing_include=request.on_missing_include, shapes=makes_urdf,
-        plugins=request.tf_options.follows_models, texts=texts)
+        plugins=options.follows_models or options.use_joint_states, texts=texts)
     if request.model_name and scene.world_names:
         msg = 'model_name has no effect, because this is a world and not a file of one model'
         warnings += (SdfWarning('WARNING', msg, Place(path)),)
     scene = scene.with_model_name(request.model_name)
-    options = request.tf_options
     tree = tf_tree_from_scene(scene, options)
     joint_positions = None if tree.moving is None else JointPositions(
         scene, tree.moving.motion, options.model, request.unreported_joints,

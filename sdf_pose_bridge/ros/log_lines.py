@@ -4,65 +4,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import compress
 import sys
-import time
 import traceback
-from typing import Any
-
-import numpy as np
 
 from sdf_pose_bridge.errors import SdfError, shortened_message, UriLookupError
 from sdf_pose_bridge.export.published_scene import LoadedScene
 from sdf_pose_bridge.printed_text import printable, quoted_names
 from sdf_pose_bridge.problems import by_message, MOST_PROBLEMS
 from sdf_pose_bridge.ros.parameters.declarations import SettingsError
-from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.tf.frame_ids import FrameNames, FrameNaming
-from sdf_pose_bridge.tf.joint_motion import dofs_from_joint
 from sdf_pose_bridge.tf.parents import NO_PARENT
-from sdf_pose_bridge.tf.tree import elements_in_model, TfTree
+from sdf_pose_bridge.tf.tree import TfTree
 
 MOST_LINES = 20
 """Largest number of errors, warnings or names in the log; a generated file may have thousands."""
-
-
-WARNING_PERIOD_S = 10.0
-"""Shortest period in s of warnings about the same thing."""
-
-MOST_REPORTED = 1000
-"""Largest number of names that are kept because they were reported."""
-
-
-class RareWarnings:
-    """
-    Logs warnings that many messages may cause, each of them rarely.
-
-    :param logger: the logger of the node.
-    """
-
-    def __init__(self, logger: Any) -> None:
-        self._logger = logger
-        self._warnings_due: dict[str, float] = {}
-        self._reported_names: set[str] = set()
-
-    def is_due(self, about: str) -> bool:
-        """Return whether the last warning about the same was long ago."""
-        return time.monotonic() >= self._warnings_due.get(about, 0.0)
-
-    def warn(self, about: str, text: Callable[[], str]) -> bool:
-        """Log a warning, unless the last one about the same was not long ago."""
-        is_due = self.is_due(about)
-        if is_due:
-            self._warnings_due[about] = time.monotonic() + WARNING_PERIOD_S
-            self._logger.warning(line_from_text(text()))
-        return is_due
-
-    def warn_once(self, about: str, names: Sequence[str], text: Callable[[], str]) -> None:
-        """Log a warning about names, unless all of them have been reported before."""
-        if not self._reported_names.issuperset(names) and self.warn(about, text):
-            self._reported_names.update(names[:MOST_REPORTED - len(self._reported_names)])
 
 
 def line_from_text(text: object) -> str:
@@ -84,12 +40,7 @@ def lines_from_traceback(error: BaseException | None) -> list[str]:
 
 
 def lines_from_error(error: Exception) -> list[str]:
-    """
-    Return one line for each error.
-
-    :param error: an error of this package; lines about a file start with its path and line.
-    :return: at least one line and at most ``MOST_LINES``, and one more if there are more errors.
-    """
+    """Return a line for each error, with the place in its file, as `lines_from_warnings`."""
     if isinstance(error, SdfError):
         hint = '; on_missing_include "skip" leaves it out'
         lines = [
@@ -105,11 +56,9 @@ def lines_from_warnings(
     warnings: Sequence[object], what: str = 'warning', hint: str = '',
 ) -> list[str]:
     """
-    Return one line for each warning, or for other things.
+    Return at most ``MOST_LINES`` lines about warnings or other things, and one that counts others.
 
-    :param warnings: objects with a text for ``str``.
-    :param hint: the end of the line that counts the others.
-    :return: at most ``MOST_LINES`` lines, and one more if there are more warnings.
+    :param hint: the end of that line.
     """
     lines = list(map(line_from_text, warnings[:MOST_LINES]))
     rest = len(warnings) - len(lines)
@@ -120,11 +69,7 @@ def lines_from_warnings(
 
 
 def names_in_line(names: Sequence[str]) -> str:
-    """
-    Return names separated by commas.
-
-    :return: at most ``MOST_LINES`` names, and the number of the others.
-    """
+    """Return at most ``MOST_LINES`` names with commas, and the number of the others."""
     return line_from_text(quoted_names(names, MOST_LINES))
 
 
@@ -152,14 +97,11 @@ def lines_about_scene(loaded: LoadedScene) -> list[str]:
 
 
 def lines_about_lost_frames(before: TfTree, after: TfTree) -> list[str]:
-    """
-    Return lines about frames that have lost their transforms; TF cannot forget them.
-
-    :param before: the tree that was published before.
-    :param after: the tree that is published now.
-    :return: a line about removed frames, and one about frames without a parent, if any.
-    """
-    lost = _children(before) - _children(after)
+    """Return a line about removed frames, and one about those without a parent now, if any."""
+    had, have = (
+        {*compress(each.frame_ids, (each.parents != NO_PARENT).tolist())}
+        for each in (before, after))
+    lost = had - have
     frames = {
         'no longer published, which TF listeners keep until they are restarted':
             lost.difference(after.frame_ids),
@@ -181,35 +123,16 @@ def line_about_detached_models(tree: TfTree) -> str:
         f'one, or this node from "{tree.root_frame}" with anchor_models "all"')
 
 
-def line_about_joints_at_rest(scene: Scene, model: str, frame_names: FrameNames) -> str:
-    """
-    Return a line that joints do not move; '' if no joint can move.
-
-    Joints that follow others are not counted, as in ``StateReport``.
-
-    :param model: the scoped name of the only model that is published; empty for everything.
-    :param frame_names: the part of a scoped name that the name of a joint contains.
-    """
-    is_inside = elements_in_model(scene, model)
-    free = [
-        dofs[0] for joint in scene.joints
-        if is_inside[joint.element]
-        and (dofs := [dof for dof in dofs_from_joint(joint) if dof.axis.mimic is None])
-        and not scene.is_static(joint.element)]
-    if not free:
-        return ''
-    first = np.array([free[0].joint.element], np.int32)
-    name = FrameNaming(frame_names).frame_ids_from_scene(scene, first)[0] + free[0].suffix
-    return (
-        f'fixed as in the file: {count_in_words(len(free), "joint")} that can move, for example '
-        f'{names_in_line([name])}; with the parameter use_joint_states, joints follow the topics '
-        'in joint_states_topics')
+def line_about_rest(tree: TfTree) -> str:
+    """Return a line about joints and models that follow no messages; '' if all do."""
+    parts = [
+        f'{count_in_words(len(names), what)} that can move, for example {names_in_line(names[:1])}'
+        for what, names in zip(('joint', 'model'), tree.at_rest, strict=True) if names]
+    return '' if not parts else (
+        f'fixed as in the file: {" and ".join(parts)}; with the parameter use_joint_states, '
+        'joints follow the topics in joint_states_topics, and models those in model_pose_topics')
 
 
 def count_in_words(number: int, what: str) -> str:
     """Return a number with a noun in the singular or the plural."""
     return f'{number} {what}' if number == 1 else f'{number} {what}s'
-
-
-def _children(tree: TfTree) -> set[str]:
-    return set(compress(tree.frame_ids, (tree.parents != NO_PARENT).tolist()))

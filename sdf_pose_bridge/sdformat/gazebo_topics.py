@@ -122,7 +122,8 @@ odometry. Of several poses of one model, those that are first here are followed.
 """
 SENSOR_PATHS = tuple(dict.fromkeys(('topic', *re.findall(r'[{?!](\w+(?:/\w+)+)', _TOPICS))))
 """Elements of a sensor on which its topics depend."""
-GROUPS = ('joints', 'poses', 'odometry', 'sensors', 'commands')
+STATE_GROUPS = ('joints', 'poses', 'odometry')
+GROUPS = (*STATE_GROUPS, 'sensors', 'commands')
 _ABBREVIATIONS = {'~': '/model/{M}', '@': '/world/{W}/model/{P}/{C}/sensor/{S}'}
 _DELETED, _LAST_LEVEL = re.compile('@|~|//|:='), re.compile(r'(?<![^/])[^/]+/\.\./')
 

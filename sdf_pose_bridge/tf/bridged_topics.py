@@ -44,14 +44,28 @@ class BridgedTopic(NamedTuple):
 
     gz_name: str
     ros_name: str
-    pattern: str
-    """Its name in ROS with ``{model}`` for the free model, or for joints the top-level model."""
+    model: str
+    """The one model that its messages are about: a free one, or for joints a top-level one."""
     topic: GazeboTopic
-    places_model: bool
-    """Whether its messages say where the free model of its owners is."""
+    models: frozenset[int]
+    """The free models whose poses its messages have, or the models whose joints."""
     owners: Sequence[Owner]
     doubt: SdfWarning | None = None
     """A warning about a topic of several plugins or sensors."""
+
+    @property
+    def pattern(self) -> str:
+        """Its name in ROS with ``{model}`` for the model."""
+        start = f'/{_ros_name(self.model)}/'
+        is_below = self.model and self.ros_name.startswith(start)
+        return f'/{{model}}/{self.ros_name.removeprefix(start)}' if is_below else self.ros_name
+
+
+def models_on(names: Sequence[str], topics: Sequence[BridgedTopic]) -> frozenset[int] | None:
+    """Return the models that topics of plugins are about; None if any name is another topic's."""
+    models = {name: each.models for each in topics for name in (each.ros_name, each.gz_name)}
+    return frozenset().union(*(models[name] for name in names)) if (
+        names and models.keys() >= {*names}) else None
 
 
 def bridged_topics(scene: Scene, groups: Collection[str], world: str = '') -> list[BridgedTopic]:
@@ -62,8 +76,11 @@ def bridged_topics(scene: Scene, groups: Collection[str], world: str = '') -> li
     :param world: the world in Gazebo, for a model file.
     :raises ElementMissingError: if a topic begins with the name of the world, and there is none.
     """
-    free_models = tf_parents_from_scene(scene).with_free_models(
-        scene, np.zeros(len(scene.names), np.bool_), '').free_models_around()
+    free_models = tf_parents_from_scene(scene).with_free_models(scene).free_models_around()
+    models_in = defaultdict[int, list[int]](list)
+    for model in np.flatnonzero(free_models == np.arange(len(free_models))).tolist():
+        for each in scene.with_ancestors(model):
+            models_in[each].append(model)
     found = defaultdict[tuple[str, str], list[Owner]](list)
     for owner in _owners(scene, world, free_models):
         topic, values = owner.topic, owner.values
@@ -87,28 +104,37 @@ def bridged_topics(scene: Scene, groups: Collection[str], world: str = '') -> li
                 scene.names[element].removeprefix(prefix).removeprefix(SEPARATOR),
                 topic.ros_name.format_map(defaultdict(str, values)))))
             prefix = f'/{_ros_name(prefix)}'
-        ros_name = pattern = unused_name(f'{prefix}/{_ros_name(below)}', used)
         around = model.partition(SEPARATOR)[0] if topic.group == 'joints' or free_model < 0 else (
             scene.names[free_model])
-        if prefix and ros_name.startswith(start := f'/{_ros_name(around)}/'):
-            pattern = f'/{{model}}/{ros_name.removeprefix(start)}'
+        models = frozenset(
+            each for owner in owners for each in _models(owner, models_in[owner.element]))
         bridged.append(BridgedTopic(
-            name, ros_name, pattern, topic, free_model >= 0 and (bool(topic.odometry_frame) or (
-                # A pose of another model is given in the model around it.
-                topic.group == 'poses' and model == scene.names[free_model]
-                and is_true(values, 'publish_model_pose'))),
-            owners, _doubt(name, owners, scene)))
+            name, unused_name(f'{prefix}/{_ros_name(below)}', used),
+            around if prefix and len(models) < 2 else '', topic, models, owners,
+            _doubt(name, owners, scene)))
     return bridged
+
+
+def _models(owner: Owner, models_in: Sequence[int]) -> list[int]:
+    """Return the models as in :class:`BridgedTopic`, with the free models in that of a plugin."""
+    element, free_model, _, topic, values = owner
+    if topic.group == 'poses':
+        return [each for each in models_in if is_true(values, (
+            'publish_model_pose' if each == element else 'publish_nested_model_pose'))]
+    found = element if topic.group == 'joints' else free_model if topic.odometry_frame else -1
+    return [found] if found >= 0 else []
 
 
 def _doubt(name: str, owners: Sequence[Owner], scene: Scene) -> SdfWarning | None:
     """Return a warning about a topic of several plugins or sensors."""
     element, *_, topic, _ = owners[0]
+    if len(owners) == 1:
+        return None
     names = [scene.names[each] for each in dict.fromkeys(each.element for each in owners)]
     whose, cure = quoted_names(names), ''
     if len(names) == 1:
         # Several plugins of a model may follow one command.
-        if len(owners) == 1 or topic.group == 'commands':
+        if topic.group == 'commands':
             return None
         whose = f'{listed([each.system for each in owners])} of {whose}'
         cure = f', by <{topic.names[0].partition("}")[0].lstrip("{")}>'
@@ -130,7 +156,7 @@ def _owners(scene: Scene, world: str, free_models: Indices) -> Iterator[Owner]:
             each for each in scene.with_ancestors(element) if scene.kinds[each] == Kind.MODEL]
         names = [scene.own_name(each) for each in reversed(models)]
         owners = [(each.system, each.parameters) for each in scene.plugins.get(element, ())]
-        known = {'W': world or scene.world_of(element)}
+        known = {'W': scene.world_of(element) or world}
         if models:
             known.update(M=names[-1], P='/model/'.join(names), model=scene.names[models[0]])
         if element in scene.sensors:

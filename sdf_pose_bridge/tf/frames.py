@@ -9,8 +9,9 @@ SDFormat does not have. In URDF a joint is where its child link is, and has one 
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Mapping, Sequence
+from collections.abc import Collection, Container, Iterable, Mapping, Sequence
 from functools import partial
+import itertools
 import math
 from typing import NamedTuple
 
@@ -173,7 +174,7 @@ def is_same_place(pose: Pose) -> bool:
 
 def frames_at_joints(
     frames: Frames, scene: Scene, motion: JointMotion, tf_parents: TfParents,
-    naming: FrameNaming, root_frame: str, *, joints_move: bool,
+    naming: FrameNaming, root_frame: str, moving_bodies: Collection[int],
 ) -> list[Frame]:
     """
     Make a frame for each link that URDF needs and SDFormat has not.
@@ -182,12 +183,13 @@ def frames_at_joints(
     joints to links that are not published, which are not in the URDF.
 
     :param frames: all other frames, which keep their ids.
-    :param joints_move: whether a frame can move in the body behind its joint.
+    :param moving_bodies: the bodies in which frames at their joints can move.
     """
     rows = {owner: row for row, owner in enumerate(frames.owners.tolist())}
     used = {root_frame, *frames.ids}
-    found = []
+    found, moving = [], itertools.count(len(scene.kinds))
     for index, (dof, body) in enumerate(zip(motion.dofs, motion.moved_bodies, strict=True)):
+        owner = next(moving) if body in moving_bodies else body
         pose = scene.pose_of(dof.joint.element)
         is_last = motion.last_dofs[body] == index
         if is_last and is_same_place(relative_pose(pose, scene.pose_of(body))):
@@ -199,6 +201,5 @@ def frames_at_joints(
         frame_id = naming.frame_id_from_name(f'{dof.name}{slide}{LINK_SUFFIX}')
         if parent != NO_PARENT and frame_id not in used:
             used.add(frame_id)
-            owner = len(scene.kinds) + index if joints_move else body
             found.append(Frame(frame_id, owner, parent, pose))
     return found

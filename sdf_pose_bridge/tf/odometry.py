@@ -9,7 +9,7 @@ world, with offsets. Source: ``UpdateOdometry`` of their classes in gz-sim 8 to 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from sdf_pose_bridge.geometry.pose_attributes import PoseTextError
@@ -18,7 +18,7 @@ from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.poses import EULER_RPY, pose_from_text
-from sdf_pose_bridge.tf.bridged_topics import bridged_topics
+from sdf_pose_bridge.tf.bridged_topics import BridgedTopic
 from sdf_pose_bridge.tf.joint_motion import JointMotion
 
 
@@ -35,20 +35,20 @@ class Odometry(NamedTuple):
 
 
 def odometry_from_scene(
-    scene: Scene, motion: JointMotion, problems: Problems,
+    scene: Scene, topics: Sequence[BridgedTopic], motion: JointMotion, problems: Problems,
 ) -> dict[tuple[int, str, str], Odometry]:
     """
     Find the frames of the odometry of free models.
 
-    :param scene: the scene, loaded with ``plugins=True``.
+    :param topics: the topics of the plugins in the scene.
     :param problems: takes warnings about topics of several plugins.
     :return: the frames, by the degrees of freedom of free models, the frame ids in messages, and
         the topics in ROS and in Gazebo; with an empty topic the first one for any other.
     """
     dofs = {element: dof for dof, element in enumerate(motion.elements)}
     found: dict[tuple[int, str, str], Odometry] = {}
-    for bridged in bridged_topics(scene, ('odometry',)) if scene.plugins else ():
-        if bridged.doubt:
+    for bridged in topics:
+        if bridged.doubt and bridged.topic.group == 'odometry':
             problems.warning(bridged.doubt.message, bridged.doubt.place)
         for element, free_model, _, topic, values in bridged.owners:
             if free_model not in dofs or not topic.odometry_frame:

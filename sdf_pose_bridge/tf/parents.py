@@ -14,7 +14,7 @@ has no parent.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -45,7 +45,8 @@ class TfParents(NamedTuple):
     """The models that move freely in their root, by their canonical links."""
 
     def with_free_models(
-        self, scene: Scene, is_detached: NDArray[np.bool_], only_model: str,
+        self, scene: Scene, is_detached: NDArray[np.bool_] | None = None, only_model: str = '',
+        models: Collection[int] | None = None,
     ) -> TfParents:
         """
         Let models move freely in their root, which becomes the parent of their canonical links.
@@ -53,8 +54,9 @@ class TfParents(NamedTuple):
         Models that a joint connects to another body, and static models, stay as they are.
 
         :param is_detached: for each element whether it is a body that gets no transform from the
-            root; models in a model with such a body stay too.
+            root; models in a model with such a body stay too. None for no such body.
         :param only_model: the scoped name of the only model that is published; empty for all.
+        :param models: the models that may move freely; None for all.
         """
         published = scoped_name(only_model, '')
         free_models: dict[int, int] = {}
@@ -64,8 +66,9 @@ class TfParents(NamedTuple):
             name = scoped_name(scene.names[model], '')
             # A model with the canonical link of a model in it comes before that.
             if not (link in free_models or link in self.joints or scene.is_static(link)
-                    or is_detached[top_link] or scene.roots[model]) and (
-                        name.startswith(published) or published.startswith(name)):
+                    or (is_detached is not None and is_detached[top_link]) or scene.roots[model]
+                    ) and (name.startswith(published) or published.startswith(name)) and (
+                        models is None or model in models):
                 free_models[link] = model
         parents = self.parents.copy()
         parents[list(free_models)] = 0

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -26,8 +26,10 @@ from sdf_pose_bridge.nearest_names import hint_from_names
 from sdf_pose_bridge.printed_text import quoted_names
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Joint, ReadOnly, Scene
+from sdf_pose_bridge.sdformat.gazebo_topics import STATE_GROUPS
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.anchors import AnchorModels, AnchorPatterns, detached_bodies
+from sdf_pose_bridge.tf.bridged_topics import bridged_topics, models_on
 from sdf_pose_bridge.tf.frame_ids import frame_ids_with_sensors, FrameNames, FrameNaming
 from sdf_pose_bridge.tf.frames import (
     check_frames_of_sensors,
@@ -68,9 +70,13 @@ class TfOptions(NamedTuple):
     """Whether each camera gets an optical frame besides its own."""
     use_joint_states: bool = False
     """Whether moving joints follow ``joint_states``."""
+    joint_states_topics: tuple[str, ...] = ('joint_states', '{model}/joint_states')
+    """The topics of joint states. If all are those of plugins, other joints do not follow any."""
     follows_models: bool = False
     """Whether the poses of models come from topics or from a simulator. Then
     :attr:`AnchorModels.AUTO` means all models."""
+    model_pose_topics: tuple[str, ...] = ()
+    """The topics of poses, as for joint states."""
     has_joint_links: bool = False
     """Whether the links without mass at joints of URDF are frames too."""
     others: tuple[str, ...] = ()
@@ -113,6 +119,10 @@ class TfTree(ReadOnly):
     """The frames that joints and free models move; None if they follow no messages."""
     odometry: Mapping[tuple[int, str, str], Odometry]
     """The frames of odometry, as :func:`odometry_from_scene` finds them."""
+    at_rest: tuple[Sequence[str], Sequence[str]]
+    """A name of each joint that does not follow messages, but could, and the names of models."""
+    topic_models: Mapping[str, str]
+    """The scoped names of the models that topics of plugins are about, by their names."""
     world: str
     """The name of the world that the frames belong to; empty for a model file."""
     warnings: tuple[SdfWarning, ...]
@@ -183,8 +193,15 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     if anchors is AnchorModels.AUTO and options.follows_models:
         anchors = AnchorModels.ALL
     is_detached = detached_bodies(scene, tf_parents, anchors, problems)
+    topics = bridged_topics(scene, STATE_GROUPS, WORLD_FRAME) if scene.plugins else []
+    owners = models_on(options.joint_states_topics, topics)
+    joints = {body: each for body, each in tf_parents.joints.items() if options.use_joint_states
+              and (owners is None or scene.parents.item(each.element) in owners)}
+    every = JointMotion(scene, tf_parents if not options.follows_models else (
+        tf_parents.with_free_models(scene, is_detached, options.model)), options.frame_names)
     if options.follows_models:
-        tf_parents = tf_parents.with_free_models(scene, is_detached, options.model)
+        tf_parents = tf_parents.with_free_models(
+            scene, is_detached, options.model, models_on(options.model_pose_topics, topics))
     nearest_frames, parents = _nearest_frames_and_parents(scene, tf_parents, elements, is_detached)
     frames = Frames(list(frame_ids.values()), elements, parents, scene.poses[elements])
     optical_frames = optical_frames_of_cameras(
@@ -200,10 +217,8 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     problems.raise_errors()
     _warn_of_loops(tf_parents, scene, problems)
     if options.has_joint_links:
-        motion = JointMotion(scene, tf_parents, options.frame_names)
         frames = frames.with_frames(frames_at_joints(
-            frames, scene, motion, tf_parents, naming, options.root_frame,
-            joints_move=options.use_joint_states))
+            frames, scene, every, tf_parents, naming, options.root_frame, joints))
     pose_frame = options.pose_frame or options.root_frame
     ids = [options.root_frame, *frames.ids]
     if pose_frame not in ids:
@@ -213,16 +228,15 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     reference = ids.index(pose_frame) - 1
     moving, odometry = None, {}
     if options.use_joint_states or options.follows_models:
-        if not options.use_joint_states:
-            tf_parents = tf_parents._replace(joints={})
-        motion = JointMotion(scene, tf_parents, options.frame_names, options.others)
+        motion = JointMotion(
+            scene, tf_parents._replace(joints=joints), options.frame_names, options.others)
         others = {naming.frame_id_from_name(name): owner for owner, name in enumerate(
             options.others, len(scene.kinds) + len(motion.elements))}
         frames = frames.with_frames([
             Frame(each, others[each], ROOT_IS_PARENT, Pose())
             for each in sorted(others.keys() - {'', *ids})])
         moving = MovingFrames(motion, frames.poses, frames.parents, frames.owners, reference)
-        odometry = odometry_from_scene(scene, motion, problems)
+        odometry = odometry_from_scene(scene, topics, motion, problems)
     return TfTree(
         root_frame=options.root_frame,
         frame_ids=tuple(frames.ids),
@@ -236,9 +250,24 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
         nearest_frames=nearest_frames,
         moving=moving,
         odometry=odometry,
+        at_rest=_at_rest(scene, every, options.model, {
+            *tf_parents.free_models.values(), *(each.element for each in joints.values())}),
+        topic_models={name: each.model for each in topics if each.model
+                      for name in (each.ros_name, each.gz_name)},
         world=scene.world_names.get(0, ''),
         warnings=problems.warnings,
     )
+
+
+def _at_rest(
+    scene: Scene, every: JointMotion, model: str, moving: Container[int],
+) -> tuple[Sequence[str], Sequence[str]]:
+    is_inside = elements_in_model(scene, model)
+    joints = {each.joint.element: each.name for each in reversed(every.dofs)
+              if is_inside[each.joint.element] and each.axis.mimic is None}
+    models = zip(every.elements[len(every.dofs):], every.names[len(every.dofs):], strict=True)
+    return ([joints[each] for each in sorted(joints) if each not in moving],
+            [name for each, name in models if each not in moving])
 
 
 def _published_elements(scene: Scene, options: TfOptions, problems: Problems) -> Indices:

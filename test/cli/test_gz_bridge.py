@@ -104,6 +104,12 @@ def test_the_standard_input_is_no_file_of_the_node(run_main):
     assert result.stdout.startswith('/**:\n  ros__parameters:\n    use_sim_time: true\n')
 
 
+def test_a_file_without_a_model_has_the_topic_of_the_clock_alone(run_main, parsed, files):
+    (files / 'empty.sdf').write_text('<sdf version="1.9"/>')
+    assert [each['ros_topic_name'] for each in parsed('empty.sdf')] == ['/clock']
+    assert 'model_name' not in run_main('gz_bridge', 'empty.sdf', '--node').stdout
+
+
 def test_output_is_written_to_a_file(run_main, files):
     printed = run_main('gz_bridge', 'two.sdf').stdout
     assert run_main('gz_bridge', 'two.sdf', '-o', 'a.yaml').stdout == ''
@@ -128,7 +134,7 @@ def test_the_node_follows_the_topics_that_are_bridged(parsed, files, arguments, 
         {**parameters, 'kinds': ['link'], 'publish_frequency': 1.0})
     loaded = loaded_scene_from_request(settings.load_request)
     topics = state_topics_from_settings(
-        settings, loaded.tree.world, loaded.joint_positions, lambda name: name)
+        settings, loaded.tree, loaded.joint_positions, lambda name: name)
     bridged = {each['ros_topic_name'] for each in parsed(*arguments)}
     assert topics.warnings == ()
     assert [*topics.joint_states.values()] == [*topics.model_poses.values()] == models

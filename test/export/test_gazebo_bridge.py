@@ -6,8 +6,7 @@ import pytest
 from sdf_texts import joint, JOINTS, model, model_file, plugin, world_file
 
 from sdf_pose_bridge import load_text
-from sdf_pose_bridge.export.gazebo_bridge import followed_topics, FollowedTopics, node_parameters
-from sdf_pose_bridge.export.published_scene import LoadRequest
+from sdf_pose_bridge.export.gazebo_bridge import followed_topics
 from sdf_pose_bridge.sdformat.gazebo_topics import GROUPS
 from sdf_pose_bridge.tf.bridged_topics import bridged_topics
 
@@ -15,10 +14,9 @@ from sdf_pose_bridge.tf.bridged_topics import bridged_topics
 def parameters_of(text, world='', name=''):
     """Return the topics of joint states and poses, and the frames of poses."""
     scene = load_text(text, plugins=True).with_model_name(name)
-    followed = followed_topics(bridged_topics(scene, GROUPS, world), world)
-    return [[*each] for each in (
-        followed.use_joint_states * followed.joint_states_topics,
-        followed.model_pose_topics, followed.model_pose_frames)]
+    followed = followed_topics(scene, bridged_topics(scene, GROUPS, world), world)
+    assert followed.pop('use_joint_states') is bool(followed['joint_states_topics'])
+    return [*followed.values()]
 
 
 def test_one_pattern_is_for_all_robots():
@@ -30,14 +28,15 @@ def test_one_pattern_is_for_all_robots():
 def test_patterns_have_names_that_ros_forbids_escaped():
     text = world_file(model('r 1', model('r 12', plugin('DiffDrive') + JOINTS) + JOINTS))
     assert parameters_of(text) == [
-        ['/{model}/joint_states', '/{model}/r_x20_12/joint_states'], ['/{model}/odometry'], []]
+        ['/{model}/joint_states', '/{model}/r_x20_12/joint_states'],
+        ['/r_x20_1/r_x20_12/odometry'], []]
 
 
 @pytest.mark.parametrize(('contents', 'poses'), [
     ({'a': 'OdometryPublisher'}, ['/{model}/odometry']),
     ({'a': 'DiffDrive OdometryPublisher'}, ['/{model}/odometry_1']),
     ({'a': 'DiffDrive OdometryPublisher', 'b': 'DiffDrive'},
-     ['/b/odometry', '/{model}/odometry_1']),
+     ['/a/odometry_1', '/b/odometry']),
     ({'a': 'DiffDrive PosePublisher'}, ['/{model}/odometry']),
     ({'a': 'DiffDrive PosePublisher publish_model_pose'}, ['/{model}/pose']),
     ({'a': 'DiffDrive OdometryPublisher PosePublisher publish_model_pose'},
@@ -65,7 +64,7 @@ def test_the_node_follows_a_plugin_in_a_nested_model_for_the_free_one_around_it(
     for text in f'<model name="c">{bot}</model>', model('a', bot + joined):
         assert parameters_of(world_file(text)) == [[], ['/{model}/bot/odometry'], []]
     # Without a joint, it moves by itself in the model around it.
-    assert parameters_of(world_file(model('a', bot)))[1] == ['/{model}/pose']
+    assert parameters_of(world_file(model('a', bot)))[1] == ['/a/bot/pose']
 
 
 def test_of_plugins_in_two_models_of_one_body_the_true_one_is_followed():
@@ -94,6 +93,20 @@ def test_a_spawned_model():
     assert parameters_of(text.replace('true', 'false'), 'shop')[1:] == [[], []]
 
 
-def test_a_parameter_with_its_default_value_is_left_out():
-    assert node_parameters(LoadRequest('a.sdf', ''), FollowedTopics(use_joint_states=True)) == {
-        'use_sim_time': True, 'sdf_file': 'a.sdf', 'use_joint_states': True}
+POSES = plugin('PosePublisher', '<publish_nested_model_pose>true</publish_nested_model_pose>')
+HINGE = '<link name="k"/>' + joint(
+    '<parent>l</parent><child>k</child>', joint_type='revolute')
+
+
+@pytest.mark.parametrize(('contents', 'joints', 'poses'), [
+    ({'a': JOINTS + HINGE, 'b c': ''}, ['/{model}/joint_states'], []),
+    ({'a': JOINTS + HINGE, 'b c': HINGE + plugin('DiffDrive')},
+     ['/a/joint_states'], ['/b_x20_c/odometry']),
+    ({'a': POSES, 'b': '', 'c': plugin('DiffDrive')}, [], ['/a/pose', '/c/odometry']),
+    # The poses of a model that moves in another one are on the topic of this.
+    ({'a': POSES + model('b', ''), 'c': POSES}, [], ['/a/pose', '/c/pose']),
+    ({'a': POSES + '<static>true</static>', 'c': POSES}, [], ['/{model}/pose']),
+])
+def test_topics_are_named_if_not_all_models_have_them(contents, joints, poses):
+    text = world_file(''.join(model(*each) for each in contents.items()))
+    assert parameters_of(text)[:2] == [joints, poses]

@@ -3,12 +3,10 @@
 """What goes to the log: one line for each thing, whatever names a file holds."""
 
 import ast
-from functools import partial
 from pathlib import Path
 import re
 
 import pytest
-from rclpy.logging import get_logger
 from sdf_texts import fixed_joint, joint, model_file, world_file
 from tf_checks import tree_of
 import urdf_texts as urdf
@@ -20,24 +18,20 @@ from sdf_pose_bridge.problems import MOST_PROBLEMS
 from sdf_pose_bridge.ros import log_lines
 from sdf_pose_bridge.ros.log_lines import (
     line_about_detached_models,
-    line_about_joints_at_rest,
+    line_about_rest,
     line_from_text,
     lines_about_lost_frames,
     lines_about_scene,
     lines_from_error,
     lines_from_warnings,
     MOST_LINES,
-    MOST_REPORTED,
-    RareWarnings,
     text_about_defect,
-    WARNING_PERIOD_S,
 )
 from sdf_pose_bridge.ros.parameters.declarations import SettingsError
 from sdf_pose_bridge.ros.publishing.state_report import StateReport
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.anchors import AnchorModels
-from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
@@ -112,20 +106,6 @@ def test_the_traceback_of_a_defect_writes_no_line_of_the_log():
     assert len(lines) == 100
 
 
-def test_warnings_about_the_same_are_rare_and_about_new_names_only(monkeypatch, capfd):
-    now = 0.0
-    monkeypatch.setattr('time.monotonic', lambda: now)
-    warnings = RareWarnings(get_logger('test'))
-    many = [str(number) for number in range(MOST_REPORTED)]
-    for now, about, names in (
-            (0.0, 'a', ['x']), (1.0, 'a', ['y']), (1.0, 'b', ['y']),
-            (WARNING_PERIOD_S, 'a', ['x', 'y']), (2 * WARNING_PERIOD_S, 'a', ['z', *many]),
-            (3 * WARNING_PERIOD_S, 'a', many)):
-        warnings.warn_once(about, names, partial('{} about {}'.format, now, about))
-    assert [line.split('[test]: ')[1] for line in capfd.readouterr().err.splitlines()] == [
-        '0.0 about a', '1.0 about b', '20.0 about a', '30.0 about a']
-
-
 def test_names_and_paths_cannot_write_lines_of_their_own(tmp_path):
     path, name = tmp_path / 'a\n[FATAL] b.sdf', 'a\n[FATAL] b'
     path.write_text(world_file(
@@ -138,7 +118,7 @@ def test_names_and_paths_cannot_write_lines_of_their_own(tmp_path):
         *lines_about_scene(loaded), *lines_about_lost_frames(loaded.tree, empty),
         StateReport([name]).line_about_unreported(),
         StateReport(models=[name]).line_about_unreported(),
-        line_about_joints_at_rest(loaded.scene, '', FrameNames.AUTO),
+        line_about_rest(loaded.tree),
         *lines_from_error(SettingsError([name])), *lines_from_error(ValueError(name)),
         *lines_from_warnings([name])]
     assert len(lines) == 9
@@ -216,11 +196,10 @@ def test_joints_that_stand_still_are_counted_where_they_are_published():
            + joint(ends, 'j', 'revolute') + fixed_joint('f', 'a', 'b') + '</model>')
     still = arm.format('still', '<static>true</static>')
     scene = load_text(world_file(arm.format('left', '') + arm.format('right', '') + still))
-    assert '2 joints that can move, for example "left/j";' in line_about_joints_at_rest(
-        scene, '', FrameNames.AUTO)
-    assert '1 joint that can move, for example "right/j";' in line_about_joints_at_rest(
-        scene, 'right', FrameNames.AUTO)
-    assert line_about_joints_at_rest(load_text(world_file(still)), '', FrameNames.AUTO) == ''
+    for model, count in (('', '2 joints that can move, for example "left/j";'),
+                         ('right', '1 joint that can move, for example "right/j";')):
+        assert count in line_about_rest(tf_tree_from_scene(scene, TfOptions(model=model)))
+    assert line_about_rest(tf_tree_from_scene(load_text(world_file(still)))) == ''
 
 
 @pytest.mark.parametrize('content', [
@@ -234,7 +213,8 @@ def test_joints_that_stand_still_are_those_that_messages_have_to_name(content):
     tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
     positions = JointPositions(scene, tree.moving.motion)
     (first,), _ = positions.unreported()
-    line = line_about_joints_at_rest(scene, '', FrameNames.AUTO)
+    assert line_about_rest(tree) == ''
+    line = line_about_rest(tf_tree_from_scene(scene))
     assert line.startswith(f'fixed as in the file: 1 joint that can move, for example "{first}";')
 
 

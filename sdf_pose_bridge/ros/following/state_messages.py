@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field
 import re
 import time
@@ -22,7 +22,7 @@ from sdf_pose_bridge.nearest_names import hint_from_names
 from sdf_pose_bridge.ros.cdr import NO_ROWS, Rows, SerializedNames
 from sdf_pose_bridge.ros.following.message_counts import MessageCounts
 from sdf_pose_bridge.ros.following.other_publishers import names_of_nodes, publishers_of_topic
-from sdf_pose_bridge.ros.log_lines import names_in_line, RareWarnings
+from sdf_pose_bridge.ros.log_lines import line_from_text, names_in_line
 from sdf_pose_bridge.ros.parameters.rules import MOST_CHARACTERS
 from sdf_pose_bridge.ros.publishing.published_frames import MovingTopics
 from sdf_pose_bridge.tf.joint_motion import NO_DOF
@@ -35,6 +35,12 @@ MOST_BYTES = 4_000_000
 
 BYTES_OF_OBJECTS = 2_000
 """Size that is counted for the objects of a stream, in addition to its names and rows."""
+
+WARNING_PERIOD_S = 10.0
+"""Shortest period in s of warnings about the same thing."""
+
+MOST_REPORTED = 1000
+"""Largest number of names that are kept because they were reported."""
 
 _BYTES_OF_MODEL = 200
 """Size that is counted for each model of a stream, and for each frame id."""
@@ -76,9 +82,9 @@ class Message(NamedTuple):
     """The frame of a single model whose pose is given; empty for model frames."""
 
 
-class StateSource(RareWarnings):
+class StateSource:
     """
-    A source of messages about joints or models.
+    A source of messages about joints or models; logs each warning about them rarely.
 
     :param name: its full name, for messages.
     :param model: the model that all messages are about; empty for any.
@@ -100,7 +106,9 @@ class StateSource(RareWarnings):
         """The free models without a pose of their own since those of frames that they carry, with
         the names of these."""
         self._node = node
-        super().__init__(node.get_logger())
+        self._logger = node.get_logger()
+        self._warnings_due: dict[str, float] = {}
+        self._reported_names: set[str] = set()
 
     @property
     def has_answers(self) -> bool:
@@ -130,6 +138,23 @@ class StateSource(RareWarnings):
     def publishers(self) -> list[str]:
         """Return the full name of the node of each publisher."""
         return names_of_nodes(publishers_of_topic(self._node, self.name))
+
+    def is_due(self, about: str) -> bool:
+        """Return whether the last warning about the same was long ago."""
+        return time.monotonic() >= self._warnings_due.get(about, 0.0)
+
+    def warn(self, about: str, text: Callable[[], str]) -> bool:
+        """Log a warning, unless the last one about the same was not long ago."""
+        is_due = self.is_due(about)
+        if is_due:
+            self._warnings_due[about] = time.monotonic() + WARNING_PERIOD_S
+            self._logger.warning(line_from_text(text()))
+        return is_due
+
+    def warn_once(self, about: str, names: Sequence[str], text: Callable[[], str]) -> None:
+        """Log a warning about names, unless all of them have been reported before."""
+        if not self._reported_names.issuperset(names) and self.warn(about, text):
+            self._reported_names.update(names[:MOST_REPORTED - len(self._reported_names)])
 
     def warn_about_invalid(self, names: Sequence[str]) -> None:
         """Log the joints or models whose values cannot be used, if there are any."""

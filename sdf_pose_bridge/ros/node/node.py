@@ -29,7 +29,7 @@ from sdf_pose_bridge.ros.file_process import FileProcess, loaded_scene
 from sdf_pose_bridge.ros.following.other_publishers import OtherPublishers, OTHERS_PERIOD_S
 from sdf_pose_bridge.ros.log_lines import (
     line_about_frames,
-    line_about_joints_at_rest,
+    line_about_rest,
     line_from_text,
     lines_about_lost_frames,
     lines_about_scene,
@@ -100,7 +100,6 @@ class SdfPoseBridge:
         self._joint_states: JointStates | None = None
         self._diagnostics = Diagnostics(node, self._state_report)
         self._others = OtherPublishers(node)
-        self._has_told_of_joints = False
         self._follower = FileFollower(loaded)
         # Simulated time may stand still, so these follow the time of the computer.
         self._publishing_again = self._periodic_publication(settings)
@@ -315,7 +314,7 @@ class SdfPoseBridge:
                 result_from_executor(self._node, self._end_joint_states)
             return
         topics = topic_names.state_topics_from_settings(
-            settings, self._loaded.tree.world, moving.positions, self._node.resolve_topic_name)
+            settings, self._loaded.tree, moving.positions, self._node.resolve_topic_name)
         # Imported here because it takes 8 ms, and joints do not move by default.
         from sdf_pose_bridge.ros.following.joint_states import JointStates
         if current is not None:
@@ -378,12 +377,8 @@ class SdfPoseBridge:
             self._logger.warning(line)
         for line in lines_about_scene(loaded):
             self._logger.info(line)
-        options = loaded.request.tf_options
-        if not (options.use_joint_states or self._has_told_of_joints):
-            line = line_about_joints_at_rest(loaded.scene, options.model, options.frame_names)
-            if line:
-                self._logger.info(line)
-                self._has_told_of_joints = True
+        if line := line_about_rest(loaded.tree):
+            self._logger.info(line, once=True)
         self._diagnostics.update(loaded)
 
     def _report_failure(self, lines: list[str]) -> None:

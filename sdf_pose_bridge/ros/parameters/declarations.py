@@ -17,7 +17,6 @@ from typing import Any, Generic, TypeVar
 
 from rclpy.parameter import Parameter
 
-from sdf_pose_bridge.export.gazebo_bridge import FollowedTopics
 from sdf_pose_bridge.export.published_scene import DescriptionFormat, LoadRequest
 from sdf_pose_bridge.ros.cdr import POSE_TYPES
 from sdf_pose_bridge.ros.parameters import rules
@@ -31,7 +30,6 @@ Value = str | bool | float | list[str]
 Setting = TypeVar('Setting')
 Choice = TypeVar('Choice', bound=enum.Enum)
 
-_FOLLOWED = FollowedTopics()
 
 class SettingsError(ValueError):
     """
@@ -241,12 +239,12 @@ class Settings:
         'its <optical_frame_id>, or like the camera with _optical appended.',
     )
     use_joint_states = _switch(
-        _FOLLOWED.use_joint_states,
+        False,
         'Makes moving joints follow the topic joint_states: their transforms are on /tf instead '
         'of /tf_static.',
     )
     joint_states_topics = Declaration(
-        [*_FOLLOWED.joint_states_topics],
+        [*TfOptions().joint_states_topics],
         'Topics of joint states, with use_joint_states. {model} stands for each top-level model '
         'of a world that has moving joints, and messages on its topic name joints of this model '
         'alone; {world} stands for the world.',
@@ -255,17 +253,17 @@ class Settings:
         rules.topic_patterns_setting, most_characters=rules.MOST_CHARACTERS,
     )
     model_pose_topics = Declaration(
-        [*_FOLLOWED.model_pose_topics],
+        [],
         'Topics of poses of models that move, with messages of '
         f'{", ".join(each.rpartition("/")[2] for each in POSE_TYPES)}. {{model}} stands for each '
         'model; TFMessage names models in its child frame ids. A pose is that of the model frame, '
         'or of the frame in the model that the child frame id names. {world} stands for the '
-        'world.',
+        'world. If all topics are of plugins in the file, other models do not move.',
         'names of topics, such as /vrpn_mocap/{model}/pose',
         rules.optional_topic_patterns_setting, most_characters=rules.MOST_CHARACTERS,
     )
     model_pose_frames = Declaration(
-        [*_FOLLOWED.model_pose_frames],
+        [],
         'Frames in the headers of these messages that are the same as root_frame. Those of the '
         'odometry that plugins of Gazebo in the file send are known without it.',
         'glob patterns for frame ids, such as */odom',
@@ -349,6 +347,8 @@ class Settings:
         values = {name: value for name, value in self.values.items() if name in TfOptions._fields}
         if self.model_name and self.frame_names is FrameNames.AUTO:
             values['frame_names'] = FrameNames.SCOPED
+        if self.simulator:
+            del values['model_pose_topics']  # all models follow it
         return TfOptions(
             **values,
             follows_models=bool(self.model_pose_topics or self.simulator),

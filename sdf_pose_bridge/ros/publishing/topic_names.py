@@ -4,9 +4,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fnmatch import fnmatchcase
 import re
+from types import MappingProxyType
 from typing import NamedTuple
 
 from sdf_pose_bridge.names import SEPARATOR
@@ -15,6 +16,7 @@ from sdf_pose_bridge.ros.parameters.declarations import Settings, SettingsError
 from sdf_pose_bridge.ros.parameters.rules import MODEL_FIELD, MOST_TOPICS, WORLD_FIELD
 from sdf_pose_bridge.tf.frame_ids import LONGEST_NAME, SHORTEST_LIMIT, topic_name_from_frame_id
 from sdf_pose_bridge.tf.joint_positions import JointPositions
+from sdf_pose_bridge.tf.tree import TfTree
 
 LONGEST_FULL_NAME = 246
 """Largest length of the full name of a topic in the middleware."""
@@ -101,22 +103,22 @@ def pose_topics_from_patterns(
 
 
 def state_topics_from_settings(
-    settings: Settings, world: str, positions: JointPositions, full_name: Callable[[str], str],
+    settings: Settings, tree: TfTree, positions: JointPositions, full_name: Callable[[str], str],
 ) -> StateTopics:
     """
     Name the topics of joint states and of poses of models.
 
-    :param world: the name of the world; empty for a model file.
     :param positions: the joints and the free models.
     :param full_name: returns the full name of a topic, after it is remapped.
     """
+    world, known = tree.world, tree.topic_models
     joint_states, warnings = topics_from_patterns(
         'joint_states_topics', settings.joint_states_topics, world, positions.models, full_name,
         'there is no world with a model that has moving joints; joint_states names one for all '
-        'joints') if settings.use_joint_states else ({}, [])
+        'joints', known) if settings.use_joint_states else ({}, [])
     model_poses, others = topics_from_patterns(
         'model_pose_topics', settings.model_pose_topics, world, positions.free_models, full_name,
-        f'there is no world for {WORLD_FIELD}, or no model that can move')
+        f'there is no world for {WORLD_FIELD}, or no model that can move', known)
     if settings.tf_options.follows_models and not (
             positions.free_models or settings.simulator_others):
         others = [(
@@ -128,12 +130,14 @@ def state_topics_from_settings(
 def topics_from_patterns(
     parameter: str, patterns: Sequence[str], world: str, models: Sequence[str],
     full_name: Callable[[str], str], reason_for_none: str,
+    topic_models: Mapping[str, str] = MappingProxyType({}),
 ) -> tuple[dict[str, str], list[str]]:
     """
     Name topics.
 
     :param patterns: names of topics, in which ``{model}`` and ``{world}`` stand for names in a
         world. Without a world, patterns with them name no topic.
+    :param topic_models: the models of other topics, if they are for one.
     :return: the model of each topic, and the warnings, as in :class:`StateTopics`.
     """
     # By the full name of each topic: its models, and the name for each of them.
@@ -142,7 +146,8 @@ def topics_from_patterns(
     for pattern in dict.fromkeys(patterns):
         if WORLD_FIELD in pattern and not world:
             continue
-        for model in models if MODEL_FIELD in pattern else ('',):
+        known = {topic_models.get(pattern, '')}.intersection(models)
+        for model in models if MODEL_FIELD in pattern else known or ('',):
             frame_id = model.replace(SEPARATOR, '/')
             name = pattern.replace(MODEL_FIELD, topic_name_from_frame_id(frame_id)).replace(
                 WORLD_FIELD, topic_name_from_frame_id(world))

@@ -22,7 +22,7 @@ from sdf_pose_bridge.export.published_scene import LoadRequest
 from sdf_pose_bridge.export.scene_from_request import loaded_scene_from_request
 from sdf_pose_bridge.ros.following import simulator as module
 from sdf_pose_bridge.ros.following.simulator import Simulator
-from sdf_pose_bridge.ros.log_lines import WARNING_PERIOD_S
+from sdf_pose_bridge.ros.following.state_messages import WARNING_PERIOD_S
 from sdf_pose_bridge.ros.parameters.given import settings_from_values
 from sdf_pose_bridge.ros.parameters.rules import MOST_CHARACTERS
 from sdf_pose_bridge.tf.tree import TfOptions

@@ -4,7 +4,6 @@
 
 import pytest
 
-from sdf_pose_bridge.export.gazebo_bridge import FollowedTopics
 from sdf_pose_bridge.export.published_scene import LoadRequest
 from sdf_pose_bridge.ros.parameters.declarations import Declaration, DECLARATIONS
 from sdf_pose_bridge.ros.parameters.given import settings_from_values
@@ -26,7 +25,7 @@ DERIVED = {'tf_options', 'follows_models', 'has_joint_links', 'others'}
 """Fields that are made of several parameters, or of none."""
 
 
-@pytest.mark.parametrize('record', [TfOptions, LoadRequest, FollowedTopics])
+@pytest.mark.parametrize('record', [TfOptions, LoadRequest])
 def test_each_field_of_a_record_is_a_parameter(record):
     assert {*record._fields} - DERIVED <= DECLARATIONS.keys()
 

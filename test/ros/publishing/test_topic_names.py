@@ -12,7 +12,7 @@ from rclpy.validate_topic_name import validate_topic_name
 pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import given
 from hypothesis import strategies as st
-from sdf_texts import joint, model_file, world_file
+from sdf_texts import joint, model, model_file, plugin, world_file
 
 from sdf_pose_bridge.export.scene_from_request import loaded_scene_from_request
 from sdf_pose_bridge.ros.parameters.declarations import DECLARATIONS, SettingsError
@@ -277,7 +277,7 @@ def test_topics_of_poses_of_models(text, values, model_poses, words):
         {'robot_description': text, 'model_pose_topics': ['/m/{model}/p'], **values})
     loaded = loaded_scene_from_request(settings.load_request)
     found = state_topics_from_settings(
-        settings, loaded.tree.world, loaded.joint_positions, str)
+        settings, loaded.tree, loaded.joint_positions, str)
     assert (found.joint_states, found.model_poses) == ({}, model_poses)
     for line, beginning in zip(found.warnings, words, strict=True):
         assert line.startswith(beginning)
@@ -291,8 +291,33 @@ def test_the_topics_of_a_spawned_model_have_its_name():
         'model_name': 'x_0', 'use_joint_states': True})
     loaded = loaded_scene_from_request(settings.load_request)
     assert 'x_0/b' in loaded.tree.frame_ids
-    assert state_topics_from_settings(settings, '', loaded.joint_positions, str).joint_states == {
-        'joint_states': '', 'x_0/joint_states': 'x_0'}
+    found = state_topics_from_settings(settings, loaded.tree, loaded.joint_positions, str)
+    assert found.joint_states == {'joint_states': '', 'x_0/joint_states': 'x_0'}
+
+
+def test_the_topics_of_plugins_are_for_their_models_and_others_stay_where_the_file_puts_them():
+    elbow = '<link name="k"/>' + joint('<parent>l</parent><child>k</child>', 'j', 'revolute')
+    plugins = plugin('JointStatePublisher', '<topic>/j{}</topic>') + plugin('DiffDrive')
+    given_values = {
+        'robot_description': world_file(''.join(
+            model(name, elbow + content) for name, content in (
+                ('a', plugins.format(1)), ('b', ''), ('c', plugins.format(2))))),
+        'use_joint_states': True, 'joint_states_topics': ['/a/joint_states', '/j2'],
+        'model_pose_topics': ['/a/odometry', '/model/c/odometry'], 'description_format': 'urdf'}
+    settings = settings_from_values(given_values)
+    loaded = loaded_scene_from_request(settings.load_request)
+    found = state_topics_from_settings(settings, loaded.tree, loaded.joint_positions, str)
+    assert found == ({'/a/joint_states': 'a', '/j2': 'c'},
+                     {'/a/odometry': 'a', '/model/c/odometry': 'c'}, ())
+    assert loaded.tree.at_rest == (['b/j'], ['b'])
+    fixed = {loaded.tree.frame_ids[each] for each in loaded.tree.fixed_indices}
+    assert {'b', 'b/l', 'b/k'} <= fixed
+    assert fixed.isdisjoint({'a/l', 'a/k', 'c/l', 'c/k'})
+    # A topic of others may be about any model, and so may a simulator.
+    for values in ({'model_pose_topics': ['/a/odometry', '/poses']}, {'simulator': '/s'}):
+        tree = loaded_scene_from_request(settings_from_values(
+            {**given_values, **values}).load_request).tree
+        assert tree.at_rest == (['b/j'], [])
 
 
 def test_too_many_topics_of_poses_are_refused():
