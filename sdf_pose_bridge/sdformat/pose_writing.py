@@ -86,7 +86,11 @@ class PoseText:
         return self._encoded(b'\n'.join([*lines, self._text[position:]]))
 
     def element_at_line(self, line: int) -> int:
-        """Return the number of an element by its line in :meth:`with_a_line_for_each_tag`."""
+        """
+        Return the number of an element by its line in :meth:`with_a_line_for_each_tag`.
+
+        :raises PoseNotSetError: if there is none.
+        """
         if not 0 < line <= len(self._tags):
             msg = 'the file alone does not place this element'
             raise PoseNotSetError(msg, Place(self._path))
