@@ -71,13 +71,12 @@ def expect(found: object, wanted: object, what: str) -> None:
         raise CheckError(msg)
 
 
-def python_of(version: str) -> str:
-    """Return the command of a Python that runs; empty where there is none."""
-    command = f'python{version}'
+def is_here(version: str) -> bool:
+    """Tell whether there is a Python that runs."""
     with contextlib.suppress(OSError):
-        done = subprocess.run([command, '-c', ''], capture_output=True, check=False)
-        return '' if done.returncode else command
-    return ''
+        return not subprocess.run(
+            [f'python{version}', '-c', ''], capture_output=True, check=False).returncode
+    return False
 
 
 def declared() -> tuple[list[str], list[str]]:
@@ -200,7 +199,7 @@ class Release:
 
     def is_installed(self) -> str:
         """Install the wheel, and the sdist, for each Python, and start the programs."""
-        here = [version for version in self._pythons if python_of(version)]
+        here = [version for version in self._pythons if is_here(version)]
         for version in here:
             for path in self._distributions:
                 self._try_programs(self._environment(version, path))
@@ -212,7 +211,7 @@ class Release:
     def _environment(self, version: str, *what: object) -> Path:
         """Install something into a new environment, and return the folder of its programs."""
         folder = Path(tempfile.mkdtemp(dir=self._scratch, prefix=f'python{version}-'))
-        run(python_of(version), '-m', 'venv', '--without-pip', folder)
+        run(f'python{version}', '-m', 'venv', '--without-pip', folder)
         pip = (TOOLS / 'python', '-m', 'pip', '--python', folder / 'bin/python', 'install',
                '--disable-pip-version-check', '--quiet', '--no-index', '--find-links', WHEELS)
         # The sdist is built by the setuptools of the environment, and needs no other.

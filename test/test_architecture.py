@@ -22,12 +22,9 @@ TESTED_AS_A_WHOLE = {
 """Modules that run only as a part of others, and the test modules that run these."""
 
 
-def path_of_test(module):
-    return TESTS / module.with_name(f'test_{module.name}')
-
-
 def test_every_module_has_its_test_module_or_is_tested_as_a_whole():
-    without = {str(module) for module in MODULES if not path_of_test(module).exists()}
+    without = {str(module) for module in MODULES
+               if not (TESTS / module.with_name(f'test_{module.name}')).exists()}
     assert without == TESTED_AS_A_WHOLE.keys()
 
 

@@ -6,11 +6,11 @@ from importlib import import_module
 import re
 import xml.etree.ElementTree as ET
 
+from commands import COMMANDS
 from folders import ROOT
 import pytest
 
 import sdf_pose_bridge
-from sdf_pose_bridge.cli.main import new_parser
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.formats import POSE_FORMATS, ROTATION_FORMATS
 from sdf_pose_bridge.ros.cdr import POSE_TYPES
@@ -29,11 +29,6 @@ def names_in(page):
     """Return the words between back quotes, also those of commands: the first two."""
     text = text_of(f'docs/{page}')
     return {*re.findall(r'`([^`\n]+)`', text), *re.findall(r'`(\S+)[^`\n]*`', text)}
-
-
-def subcommands():
-    (action,) = new_parser()._subparsers._group_actions
-    return action.choices
 
 
 def text_about(command):
@@ -55,7 +50,6 @@ def all_errors(error):
     return {error.code}.union(*map(all_errors, error.__subclasses__()))
 
 
-COMMANDS = subcommands()
 NAMES = {
     'ros_interface.md': sorted(
         name.replace('*/', '<model>/').replace('*', '<frame>')

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Changes of files are noticed once each, whatever way they come about."""
 
+from functools import partial
 import os
 from pathlib import Path
 from types import SimpleNamespace
@@ -42,15 +43,10 @@ def replace(path):
     new.replace(path)
 
 
-def replace_keeping_size_and_time(path):
+def keep_size_and_time(path, change):
     status = path.stat()
-    replace(path)
-    os.utime(path, ns=(status.st_atime_ns, status.st_mtime_ns))
-
-
-def rewrite_keeping_size_and_time(path):
-    status = path.stat()
-    path.write_text('new')
+    change(path)
+    assert path.stat().st_size == status.st_size
     os.utime(path, ns=(status.st_atime_ns, status.st_mtime_ns))
 
 
@@ -62,7 +58,8 @@ def become_a_link(path):
 
 
 CHANGES = pytest.mark.parametrize('change', [
-    rewrite, replace, replace_keeping_size_and_time, rewrite_keeping_size_and_time, Path.unlink,
+    rewrite, replace, partial(keep_size_and_time, change=replace),
+    partial(keep_size_and_time, change=lambda path: path.write_text('new')), Path.unlink,
     lambda path: path.chmod(0), become_a_link])
 
 

@@ -37,17 +37,6 @@ def package_xml(package):
     return ET.parse(PACKAGES[package] / 'package.xml').getroot()
 
 
-def run_setup(*options):
-    needs.modules('setuptools')
-    return completed(
-        [sys.executable, 'setup.py', '--quiet', *options], cwd=ROOT, check=True,
-        env={**os.environ, 'PYTHONWARNINGS': 'ignore'})
-
-
-def service_files():
-    return sorted((PACKAGES['sdf_pose_bridge_interfaces'] / 'srv').glob('*.srv'))
-
-
 def installed_files():
     """Return where below the install prefix setup.py puts each data file, by the file."""
     return {
@@ -157,7 +146,9 @@ def test_names_of_other_programs_are_used_in_a_ros_workspace_only(command, node)
 def scripts(tmp_path_factory):
     """Folder of the scripts as they are installed for ROS."""
     folder = tmp_path_factory.mktemp('scripts')
-    run_setup('egg_info', '--egg-base', folder, 'install_scripts', '--install-dir', folder)
+    needs.modules('setuptools')
+    completed([sys.executable, 'setup.py', '--quiet', 'egg_info', '--egg-base', folder,
+               'install_scripts', '--install-dir', folder], cwd=ROOT, check=True)
     return folder
 
 
@@ -181,8 +172,9 @@ def test_colcon_finds_both_packages_under_every_verb(verb):
 
 
 def test_cmake_generates_every_service_file():
-    text = (ROOT / 'sdf_pose_bridge_interfaces/CMakeLists.txt').read_text()
-    assert re.findall(r'"srv/(\w+)\.srv"', text) == [file.stem for file in service_files()]
+    folder = PACKAGES['sdf_pose_bridge_interfaces']
+    assert re.findall(r'"(srv/\w+\.srv)"', (folder / 'CMakeLists.txt').read_text()) == sorted(
+        f'srv/{file.name}' for file in folder.glob('srv/*.srv'))
 
 
 @pytest.mark.parametrize('folder', ['launch', 'config', 'rviz', 'examples'])

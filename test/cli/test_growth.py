@@ -8,14 +8,12 @@ from functools import partial
 import io
 from pathlib import Path
 
+from commands import COMMANDS
 from growth.commands import plain, ROWS
 from growth.turns import fault_of_growth
 import pytest
 
-from sdf_pose_bridge.cli.main import main, new_parser
-
-(COMMANDS,) = (action.choices for action in new_parser()._actions
-               if isinstance(action, argparse._SubParsersAction))
+from sdf_pose_bridge.cli.main import main
 
 
 def exit_code(monkeypatch, arguments, stdin=''):

@@ -48,13 +48,10 @@ def make_change(tmp_path):
         made = pose_change(
             scene, scene.index(name), ASKED, lookup_from_scene, partial(load, path),
             relative_to=relative_to, **options)
-        assert_at(made.scene.pose(name, relative_to), ASKED)
+        assert_close(canonical_relative_pose(
+            made.scene.pose(name, relative_to), ASKED)[:6], 0.0, 1e-9)
         return made
     return change
-
-
-def assert_at(pose, expected, tolerance=1e-9):
-    assert_close(canonical_relative_pose(pose, expected)[:6], 0.0, tolerance)
 
 
 @pytest.mark.parametrize(('text', 'name', 'relative_to'), [

@@ -40,13 +40,6 @@ def request_of_file(path):
     return LoadRequest(str(path), '')
 
 
-def change_of(loaded):
-    """Return the call that writes a change."""
-    return (
-        write_frame_change, loaded.request, fingerprint_of_scene(loaded.scene), 'l',
-        Pose(2.0), '', loaded.joint_positions, False)
-
-
 def result(reader, request, function, *arguments):
     with reader.calling(request, function, *arguments) as call:
         return call.result()
@@ -69,7 +62,9 @@ def test_markers_come_from_it_and_changes_are_written_there(reader, request_of_f
     (marker,), _ = result(reader,
         loaded.request, markers_from_text, loaded.text, loaded.path, loaded.request, fingerprint)
     assert marker.type == 'CUBE'
-    change = result(reader, loaded.request, *change_of(loaded))
+    change = result(
+        reader, loaded.request, write_frame_change, loaded.request, fingerprint, 'l', Pose(2.0),
+        '', loaded.joint_positions, False)
     assert '+<sdf' in change.diff or '<pose>2 0 0 0 0 0' in change.diff
     assert path.read_text() == model_file(LINK).replace('1 0 0', '2 0 0')
 

@@ -11,20 +11,15 @@ import pytest
 from sdf_pose_bridge.ros.node.bridge import LINK_COMMAND, sentence_from_import_error
 
 
-def run_bridge_without(module):
-    """Run the executable's function in a process of its own that cannot import a module."""
-    program = (
-        f'import sys; sys.modules[{module!r}] = None\n'
-        'from sdf_pose_bridge.ros.node.bridge import main\n'
-        'sys.exit(main(["bridge"]))')
-    return completed([sys.executable, '-c', program], cwd=ROOT)
-
-
 @pytest.mark.parametrize(('module', 'words'), [
     ('sdf_pose_bridge_interfaces', LINK_COMMAND),
     ('rclpy', 'the Python module rclpy is missing')])
 def test_without_a_module_it_says_what_to_do(module, words):
-    result = run_bridge_without(module)
+    program = (
+        f'import sys; sys.modules[{module!r}] = None\n'
+        'from sdf_pose_bridge.ros.node.bridge import main\n'
+        'sys.exit(main(["bridge"]))')
+    result = completed([sys.executable, '-c', program], cwd=ROOT)
     assert result.returncode == 1
     assert words in result.stderr
     assert len(result.stderr.splitlines()) == 1
