@@ -101,6 +101,22 @@ def transform_messages(node: Node, transforms: Iterable[tuple[str, str, Pose]]) 
     return messages
 
 
+def publishers_of_poses(node: Node, tree: TfTree) -> list[Publisher]:
+    """Make a publisher for each frame, and publish an object by it."""
+    from geometry_msgs.msg import PoseStamped
+    stamp = node.get_clock().now().to_msg()
+    publishers = []
+    for frame_id, numbers in zip(tree.frame_ids, tree.poses.tolist(), strict=True):
+        message = PoseStamped()
+        message.header.stamp = stamp
+        message.header.frame_id = tree.root_frame
+        xyz, quat = message.pose.position, message.pose.orientation
+        xyz.x, xyz.y, xyz.z, quat.x, quat.y, quat.z, quat.w = numbers
+        publishers.append(latched_publisher(node, PoseStamped, f'/poses/{frame_id}', 1))
+        publishers[-1].publish(message)
+    return publishers
+
+
 class Bench:
     """
     The bridge's publishers, and a publisher as any program has it.
@@ -203,8 +219,6 @@ def transforms_one_by_one() -> Iterator[tuple[Function, Function | None]]:
     f'{TOPICS:,} topics of poses, made, sent and taken down',
     counterpart="rclpy's publishers, of the same quality", goal=AtMostTimes(1.0))
 def topics_of_poses() -> Iterator[tuple[Function, Function | None]]:
-    from geometry_msgs.msg import PoseStamped
-
     from sdf_pose_bridge.ros.publishing.published_frames import PublishedFrames
     from sdf_pose_bridge.ros.publishing.publishers import Publishers
     from sdf_pose_bridge.ros.publishing.topic_names import pose_topics_from_patterns
@@ -222,17 +236,6 @@ def topics_of_poses() -> Iterator[tuple[Function, Function | None]]:
                 frames.publish_topics()
 
         def counterpart() -> None:
-            stamp = ros.get_clock().now().to_msg()
-            others = []
-            for frame_id, numbers in zip(tree.frame_ids, tree.poses.tolist(), strict=True):
-                publisher = latched_publisher(ros, PoseStamped, f'/poses/{frame_id}', 1)
-                others.append(publisher)
-                message = PoseStamped()
-                message.header.stamp = stamp
-                message.header.frame_id = tree.root_frame
-                xyz, quat = message.pose.position, message.pose.orientation
-                xyz.x, xyz.y, xyz.z, quat.x, quat.y, quat.z, quat.w = numbers
-                publisher.publish(message)
-            for publisher in others:
+            for publisher in publishers_of_poses(ros, tree):
                 ros.destroy_publisher(publisher)
         yield ours, counterpart

@@ -26,6 +26,16 @@ def random_rpy(count):
     return np.random.default_rng(1).uniform(-math.pi, math.pi, (count, 3))
 
 
+def quaternion_and_scipy(rpy):
+    from scipy.spatial.transform import Rotation
+    yield lambda: quaternion_from_rpy(rpy), lambda: Rotation.from_euler('xyz', rpy).as_quat()
+
+
+def rpy_and_scipy(quats):
+    from scipy.spatial.transform import Rotation
+    yield lambda: rpy_from_quaternion(quats), lambda: Rotation.from_quat(quats).as_euler('xyz')
+
+
 @benchmark('rpy to quaternion, 1e6', counterpart="numpy's sin and cos", goal=AtMostTimes(2.0))
 def many_to_quaternion_and_sines():
     rpy = random_rpy(MANY)
@@ -41,22 +51,12 @@ def many_to_rpy_and_sines():
 
 @benchmark('rpy to quaternion, 1e6', counterpart='scipy', goal=TimesAsFast(3.0))
 def many_to_quaternion_and_scipy():
-    from scipy.spatial.transform import Rotation
-    rpy = random_rpy(MANY)
-    yield (
-        lambda: quaternion_from_rpy(rpy),
-        lambda: Rotation.from_euler('xyz', rpy).as_quat(),
-    )
+    yield from quaternion_and_scipy(random_rpy(MANY))
 
 
 @benchmark('quaternion to rpy, 1e6', counterpart='scipy', goal=TimesAsFast(3.0))
 def many_to_rpy_and_scipy():
-    from scipy.spatial.transform import Rotation
-    quats = quaternion_from_rpy(random_rpy(MANY))
-    yield (
-        lambda: rpy_from_quaternion(quats),
-        lambda: Rotation.from_quat(quats).as_euler('xyz'),
-    )
+    yield from rpy_and_scipy(quaternion_from_rpy(random_rpy(MANY)))
 
 
 @benchmark('quaternion to matrix, 1e6', counterpart='scipy', goal=TimesAsFast())
@@ -81,20 +81,12 @@ def many_from_matrix_and_scipy():
 
 @benchmark('rpy to quaternion, one', counterpart='scipy', goal=TimesAsFast(10.0, 3e-6))
 def one_to_quaternion_and_scipy():
-    from scipy.spatial.transform import Rotation
-    yield (
-        lambda: quaternion_from_rpy(ONE_RPY),
-        lambda: Rotation.from_euler('xyz', ONE_RPY).as_quat(),
-    )
+    yield from quaternion_and_scipy(ONE_RPY)
 
 
 @benchmark('quaternion to rpy, one', counterpart='scipy', goal=TimesAsFast(10.0, 3e-6))
 def one_to_rpy_and_scipy():
-    from scipy.spatial.transform import Rotation
-    yield (
-        lambda: rpy_from_quaternion(ONE_QUATERNION),
-        lambda: Rotation.from_quat(ONE_QUATERNION).as_euler('xyz'),
-    )
+    yield from rpy_and_scipy(ONE_QUATERNION)
 
 
 @benchmark('rpy to quaternion, one', counterpart='transforms3d', goal=TimesAsFast())

@@ -20,6 +20,7 @@ import time
 
 from benchmarks.bench_publication import latched_publisher
 from benchmarks.bench_publication import node
+from benchmarks.bench_publication import publishers_of_poses
 from benchmarks.bench_publication import scene_of
 from geometry_msgs.msg import PoseStamped
 from sdf_pose_bridge.ros.publishing.published_frames import PublishedFrames
@@ -37,19 +38,7 @@ def publish_as_the_bridge(ros, tree, patterns=('?*',)):
     frames.open_topics()
     frames.publish_topics()
 
-def publish_as_rclpy(ros, tree):
-    stamp = ros.get_clock().now().to_msg()
-    for frame_id, numbers in zip(tree.frame_ids, tree.poses.tolist(), strict=True):
-        message = PoseStamped()
-        message.header.stamp = stamp
-        message.header.frame_id = tree.root_frame
-        xyz, quat = message.pose.position, message.pose.orientation
-        xyz.x, xyz.y, xyz.z, quat.x, quat.y, quat.z, quat.w = numbers
-        publishers.append(latched_publisher(ros, PoseStamped, f'/poses/{frame_id}', 1))
-        publishers[-1].publish(message)
-
-publishers = []
-publish = publish_as_the_bridge if sys.argv[1] == 'bridge' else publish_as_rclpy
+publish = publish_as_the_bridge if sys.argv[1] == 'bridge' else publishers_of_poses
 tree = tf_tree_from_scene(scene_of(int(sys.argv[2]) // 10))
 assert len(tree.frame_ids) == int(sys.argv[2])
 with node() as ros:
@@ -59,7 +48,7 @@ with node() as ros:
     latched_publisher(ros, PoseStamped, '/first', 1).publish(PoseStamped())
     held = memory_kb()
     begin = time.perf_counter()
-    publish(ros, tree)
+    published = publish(ros, tree)
     print(time.perf_counter() - begin, 1024 * (memory_kb() - held))
 """
 

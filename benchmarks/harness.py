@@ -145,7 +145,7 @@ class TimesAsFast(NamedTuple):
 
 
 class PerSecond(NamedTuple):
-    """Ours has to get so much done in a second; a counterpart is for comparison."""
+    """Ours has to get so much done in a second."""
 
     rate: float
     items: int
@@ -157,11 +157,8 @@ class PerSecond(NamedTuple):
         return f'at least {self.rate:,.0f} {self.item} per second'
 
     def ratio(self, medians: Medians) -> str:
-        """Say how many are done in a second, and how that compares."""
-        text = f'{self.items / medians.ours_s:,.0f} {self.item} per second'
-        if medians.counterpart_s is not None:
-            text += f', {_quotient(medians):.2f} times the time'
-        return text
+        """Say how many are done in a second."""
+        return f'{self.items / medians.ours_s:,.0f} {self.item} per second'
 
     def is_reached(self, medians: Medians) -> bool | None:
         """Tell whether enough is done in a second."""

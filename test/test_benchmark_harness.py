@@ -79,8 +79,7 @@ def test_both_are_timed_in_turns_and_what_was_prepared_is_cleaned_up():
     (TimesAsFast(3.0, 3e-6), 4e-6, 1.0, False, '250000.0 times as fast'),
     (TimesAsFast(), 1.0, 1.0, None, '1.0 times as fast'),
     (PerSecond(300.0, 100, 'poses'), 0.25, None, True, '400 poses per second'),
-    (PerSecond(300.0, 100, 'poses'), 0.5, 0.1, False,
-     '200 poses per second, 5.00 times the time'),
+    (PerSecond(300.0, 100, 'poses'), 0.5, None, False, '200 poses per second'),
 ])
 def test_goals_judge_the_medians(goal, ours, theirs, reached, ratio):
     medians = Medians(ours, theirs)
