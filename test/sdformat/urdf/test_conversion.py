@@ -101,16 +101,16 @@ def test_joint_that_sdformat_does_not_have_is_refused_in_an_include(errors_in, j
     assert (error.code, error.line) == ('POSE_RELATIVE_TO_INVALID', 2)
 
 
-@pytest.mark.parametrize(('joint_type', 'types', 'words'), [
-    ('planar', ['fixed'], 'joint "j" is planar, which SDFormat does not have'),
+@pytest.mark.parametrize(('joint_type', 'types', 'message'), [
+    ('planar', ['fixed'], 'joint "j" is planar, which SDFormat does not have; it is fixed here'),
     ('floating', [], 'joint "j" is floating; somebody else has to publish where link "b" is')])
 def test_for_ros_a_planar_joint_is_fixed_and_a_floating_one_left_to_others(
-        joint_type, types, words):
+        joint_type, types, message):
     scene = for_ros(TWO + joint('j', 'a', 'b', joint_type, origin('1 0 0')))
     assert scene.pose('r::b').x == 1.0
     assert [each.type for each in scene.joints] == types
     (warning,) = scene.warnings
-    assert words in warning.message
+    assert warning.message == message
 
 
 def test_axis_limits_dynamics_and_mimic_are_converted():
