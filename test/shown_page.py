@@ -142,7 +142,10 @@ def strip_button(text):
 
 
 def press(page, text):
+    """Press a button of the strip, which goes when that is done."""
+    page.wait_for(strip_button(text))
     page.run(f'{strip_button(text)}.click()')
+    page.wait_for(f'!{strip_button(text)}')
 
 
 def drag(page):

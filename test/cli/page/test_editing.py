@@ -40,7 +40,6 @@ def test_typed_number_is_the_one_that_is_written(page, shown, number):
       'written to cell.sdf:{line}')""")
     assert load(shown.file).pose(HOSTILE)[:3] == pytest.approx((float(number), 0, 0), abs=1e-9)
     press(page, 'undo the last write')
-    page.wait_for(f"!{strip_button('undo the last write')}")
 
 
 @pytest.mark.parametrize('text', ['1/2', '1,234.5'])
@@ -91,7 +90,6 @@ def test_frame_is_selected_typed_written_and_cancelled_by_the_keyboard(page, sho
     page.keys('7', 'Escape')
     page.wait_for(f"{control('x [m]')}.value === '0.2500' && !{strip_button('cancel')}")
     press(page, 'undo the last write')
-    page.wait_for(f"!{strip_button('undo the last write')}")
     enter(page, control('search'), '')
 
 
@@ -99,14 +97,12 @@ def test_frame_is_dragged_and_written(page, shown):
     select(page, HOSTILE)
     drag(page)
     press(page, 'write to file')
-    page.wait_for(f"!{strip_button('write to file')}")
     pose = load(shown.file).pose(HOSTILE)
     assert pose[:3] == pytest.approx((1.0, 0.0, 0.1), abs=0.02)
     changed = shown.file.read_text().splitlines()
     assert [line for line in TEXT.splitlines() if line not in changed] == [
         f'  <frame name="{html.escape(HOSTILE)}"><pose>1 0 0 0 0 0</pose></frame>']
     press(page, 'undo the last write')
-    page.wait_for(f"!{strip_button('undo the last write')}")
     assert shown.file.read_text() == TEXT
 
 
@@ -121,13 +117,11 @@ def test_the_origin_of_a_urdf_is_written(page, shown):
     shown.file.write_text(URDF)
     select(page, 'tool')
     enter(page, control('x [m]'), '0.25')
-    page.wait_for(strip_button('write to file'))
     press(page, 'write to file')
     page.wait_for("""document.querySelector('.strip').innerText.includes(
         'written to cell.sdf:4')""")
     assert shown.file.read_text() == URDF.replace('xyz="1 ', 'xyz="0.25 ')
     press(page, 'undo the last write')
-    page.wait_for(f"!{strip_button('undo the last write')}")
     assert shown.file.read_text() == URDF
 
 
@@ -169,7 +163,6 @@ def test_frame_is_moved_in_a_narrow_window_where_the_panel_is_folded(page, tab, 
     tab.mouse(point_on_screen(tab, (1.0, 0.0, 0.05)))
     drag(tab)
     press(tab, 'cancel')
-    tab.wait_for(f"!{strip_button('cancel')}")
     assert tab.run(f'{LABELS}.map(label => label.innerText)') == [HOSTILE]
     assert tab.run(f'{ROWS}.length') == 0
     assert tab.run('window.wasRun') is None
