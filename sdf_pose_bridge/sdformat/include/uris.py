@@ -28,8 +28,8 @@ _SCHEME = re.compile(r'([A-Za-z][A-Za-z0-9+.-]*)://')
 _SCHEME_OF_ADDRESS = re.compile(r'[A-Za-z][A-Za-z0-9+.-]+(?=:/)')
 _WEB = ('http', 'https')
 _FUEL_MODEL = re.compile(
-    r'(?i)https?://[^/]+/([0-9]+[.][0-9]+/)?[^/]+/models/[^/]+(/([0-9]+|tip))?(?=/|$)')
-"""The address of a model, which alone can be fetched, at the beginning of that of a file in it."""
+    r'(?i)https?://[^/]{1,99}/([0-9.]+/)?[^/]{1,99}/models/[^/]{1,200}(/([0-9]+|tip))?(?=/|$)')
+"""The address of a model, not too long for a message; a file in it cannot be fetched alone."""
 _FUEL_HOSTS = ('fuel.gazebosim.org', 'fuel.ignitionrobotics.org', 'app.gazebosim.org')
 """Names of one server; Gazebo's cache has its models under the first, and older ones elsewhere."""
 _SHARED = ('model', 'package')
@@ -37,9 +37,6 @@ _SHARED = ('model', 'package')
 _RELATIVE = ('', 'file')
 """Schemes of paths, which may be relative to the including file."""
 _MODELS_OF_GAZEBO_CLASSIC = ('model://sun', 'model://ground_plane')
-
-_LONGEST_URI = 500
-"""Length of the longest URI in a command that a message advises."""
 
 _MOST_LEVELS = 4
 """Number of directories around a file in which a model is searched for a message."""
@@ -183,10 +180,8 @@ class ResourceFinder(NamedTuple):
         scheme, name = _scheme_and_name(uri)
         if scheme in _WEB:
             reason, model = 'it is not in the cache of Gazebo Fuel', _FUEL_MODEL.match(uri)
-            # A longer message would be cut in its middle.
-            address = model[0] if model and len(model[0]) <= _LONGEST_URI else 'URI'
-            command = shlex.join(['gz', 'fuel', 'download', '-u', address])
-            return f'{reason}; fetch it with: {command}' if model else reason
+            command = ['gz', 'fuel', 'download', '-u', model[0]] if model else []
+            return f'{reason}; fetch it with: {shlex.join(command)}' if model else reason
         if uri in _MODELS_OF_GAZEBO_CLASSIC:
             return 'it comes with Gazebo Classic, and no frame needs it'
         folder, missing = self._deepest_folder(uri, including_file)
