@@ -90,7 +90,8 @@ def _scene_of_gazebo(scene: Scene, options: argparse.Namespace) -> Scene:
         return scene
     text = (f'<sdf version="1.12"><model name={quoteattr(scene.names[1])}><include merge="true">'
             f'<uri>{escape(str(Path(scene.path).absolute()))}</uri></include></model></sdf>')
-    return load_text(text, resource_paths=options.resource_paths, plugins=True)
+    name = f'{scene.path} in Gazebo'
+    return load_text(text, name, resource_paths=options.resource_paths, plugins=True)
 
 
 def _doubts_about_ids(

@@ -66,6 +66,13 @@ def test_a_topic_of_several_robots_has_a_comment_that_names_them(run_main, files
             in run_main('gz_bridge', 'two.sdf').stdout)
 
 
+def test_an_error_of_urdf_in_gazebo_has_the_name_of_the_file(run_main, files):
+    (files / 'robot.urdf').write_text('<robot name="r"><link name="no_mass"/></robot>')
+    done = run_main('gz_bridge', 'robot.urdf')
+    assert done.returncode == 1
+    assert '(included from robot.urdf in Gazebo:1)' in done.stderr
+
+
 def test_sensors_of_urdf_are_in_the_links_that_gazebo_keeps(parsed, files):
     mass = ('<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
             '</inertial>')
