@@ -236,7 +236,8 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
             Frame(each, others[each], ROOT_IS_PARENT, Pose())
             for each in sorted(others.keys() - {'', *ids})])
         moving = MovingFrames(motion, frames.poses, frames.parents, frames.owners, reference)
-        odometry = odometry_from_scene(scene, topics, motion, problems)
+        odometry = odometry_from_scene(
+            scene, topics if options.follows_models else [], motion, problems)
     return TfTree(
         root_frame=options.root_frame,
         frame_ids=tuple(frames.ids),

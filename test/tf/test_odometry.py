@@ -133,3 +133,6 @@ def test_odometries_on_one_topic_are_told_with_both_plugins_and_the_cure():
         'the topic /model/cart/odometry belongs to DiffDrive, OdometryPublisher of "cart", so it '
         'has messages of all; give each a topic of its own in the file, by <odom_topic>')
     assert not tree_of(plugin('DiffDrive')).warnings
+    text = world_file(CART.format(plugin('DiffDrive') + plugin('OdometryPublisher')))
+    scene = load_text(text, plugins=True)
+    assert not tf_tree_from_scene(scene, TfOptions(use_joint_states=True)).warnings
