@@ -115,6 +115,24 @@ JointController.cc: JointController use_actuator_msg=true topic=x sub_topic=z
 227 commands Actuators actuators /x
 JointController.cc: JointController use_actuator_msg=true sub_topic=z
 212 commands Actuators actuators /model/b/z
+ApplyJointForce.cc: ApplyJointForce joint_name=j
+108 commands Double j/cmd_force /model/b/joint/j/cmd_force
+DetachableJoint.cc: DetachableJoint child_model=c
+104 commands Empty detachable_joint/detach /model/b/detachable_joint/detach
+152 commands Empty detachable_joint/attach /model/b/detachable_joint/attach
+186 sensors StringMsg detachable_joint/state /model/c/detachable_joint/state
+DetachableJoint.cc: DetachableJoint child_model=c topic=x attach_topic=y output_topic=z
+127 commands Empty detachable_joint/detach /x
+150 commands Empty detachable_joint/attach /y
+183 sensors StringMsg detachable_joint/state /z
+DetachableJoint.cc: DetachableJoint child_model=c topic=x detach_topic=w
+102 commands Empty detachable_joint/detach /w
+152 commands Empty detachable_joint/attach /model/b/detachable_joint/attach
+186 sensors StringMsg detachable_joint/state /model/c/detachable_joint/state
+TouchPlugin.cc: TouchPlugin
+268 sensors Boolean touched /model/a/model/b/touch/touched
+TouchPlugin.cc: TouchPlugin namespace=x
+264 sensors Boolean touched /x/touched
 JointTrajectoryController.cc: JointTrajectoryController
 382 commands JointTrajectory joint_trajectory /model/b/joint_trajectory
 JointTrajectoryController.cc: JointTrajectoryController topic=x
@@ -272,10 +290,39 @@ ROS_TYPES = """
 93 NavSat sensor_msgs/msg/NavSatFix
 94 PointCloudPacked sensor_msgs/msg/PointCloud2
 97 Boolean std_msgs/msg/Bool
+99 Empty std_msgs/msg/Empty
 101 Double std_msgs/msg/Float64
+105 StringMsg std_msgs/msg/String
 108 Pose_V tf2_msgs/msg/TFMessage
 111 JointTrajectory trajectory_msgs/msg/JointTrajectory
 114 AnnotatedAxisAligned2DBox_V vision_msgs/msg/Detection2DArray
 116 AnnotatedOriented3DBox_V vision_msgs/msg/Detection3DArray
 """
 """The line in ``mappings.py`` of each type in Gazebo and its type in ROS."""
+
+SYSTEMS = """
+AckermannSteering AcousticComms AdvancedLiftDrag AirPressure AirSpeed Altimeter ApplyJointForce
+ApplyLinkWrench Breadcrumbs Buoyancy BuoyancyEngine CameraVideoRecorder ColladaWorldExporter
+CommsEndpoint Contact DetachableJoint DiffDrive DopplerVelocityLogSystem Elevator EntitySemantics
+EnvironmentPreload EnvironmentalSystem FollowActor ForceTorque Hydrodynamics Imu JointController
+JointPositionController JointStatePublisher JointTrajectoryController KineticEnergyMonitor Label
+LensFlare LiftDrag LighterThanAirDynamics LinearBatteryPlugin LogPlayback LogRecord
+LogVideoRecorder LogicalAudioSensorPlugin LogicalCamera Magnetometer MecanumDrive ModelPhotoShoot
+MulticopterMotorModel MulticopterVelocityControl NavSat OdometryPublisher OpticalTactilePlugin
+ParticleEmitter PerfectComms PerformerDetector Physics PosePublisher PythonSystemLoader RFComms
+SceneBroadcaster Sensors ShaderParam SpacecraftThrusterModel Thermal ThermalSensor Thruster
+TouchPlugin TrackController TrackedVehicle TrajectoryFollower TriggeredPublisher UserCommands
+VelocityControl WheelSlip WindEffects
+"""
+"""The classes of plugins in gz-sim, by the names with which they are registered."""
+
+SYSTEMS_WITHOUT_TOPICS = """
+AcousticComms AdvancedLiftDrag AirPressure AirSpeed Altimeter Buoyancy CameraVideoRecorder
+ColladaWorldExporter CommsEndpoint Contact DopplerVelocityLogSystem EntitySemantics
+EnvironmentPreload FollowActor ForceTorque Imu Label LensFlare LiftDrag LighterThanAirDynamics
+LogPlayback LogRecord LogVideoRecorder LogicalCamera Magnetometer ModelPhotoShoot NavSat
+ParticleEmitter PerfectComms Physics PythonSystemLoader RFComms Sensors ShaderParam Thermal
+ThermalSensor UserCommands WheelSlip WindEffects
+"""
+"""Those without topics of types that ros_gz_bridge converts and that ROS can use; those of sensors
+send what the table has for types of sensors."""

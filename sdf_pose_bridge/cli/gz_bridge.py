@@ -21,7 +21,7 @@ from sdf_pose_bridge.nearest_names import hint_from_names
 from sdf_pose_bridge.printed_text import printable
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.gazebo_topics import GROUPS, ROS_TYPES
+from sdf_pose_bridge.sdformat.gazebo_topics import GROUPS, LEFT_OUT, ROS_TYPES
 from sdf_pose_bridge.sdformat.limits import MissingInclude
 from sdf_pose_bridge.tf.bridged_topics import bridged_topics, BridgedTopic
 from sdf_pose_bridge.tf.frame_ids import FrameNames
@@ -80,6 +80,10 @@ def run(options: argparse.Namespace) -> int:
             for name, value in parameters.items() if value)]
     else:
         lines = [line for each in topics for line in _lines(each)]
+        lines += [
+            f'# {each.system} of "{printable(scene_of_gazebo.names[element])}": add its topics'
+            for element, plugins in scene_of_gazebo.plugins.items() for each in plugins
+            if each.system.lower() in LEFT_OUT and not scene_of_gazebo.roots[element]]
     write_text('\n'.join(lines) + '\n', options.output, scene.files)
     return 0
 

@@ -207,11 +207,7 @@ class ElementsBuilder:
         numbers_of_all += numbers
 
     def elements(self, problems: Problems) -> Elements:
-        """
-        Return the table.
-
-        :param problems: takes warnings about poses that may be mistakes.
-        """
+        """Return the table; add warnings about poses that may be mistakes to the problems."""
         pose_lines = np.zeros(len(self.names), dtype=np.int32)
         pose_lines[list(self.pose_lines)] = list(self.pose_lines.values())
         table = Elements(

@@ -22,9 +22,9 @@ ros_gz_interfaces/Altimeter ros_gz_interfaces/Contacts rosgraph_msgs/Clock senso
 sensor_msgs/CameraInfo sensor_msgs/FluidPressure sensor_msgs/Image sensor_msgs/Imu=IMU
 sensor_msgs/JointState=Model sensor_msgs/LaserScan sensor_msgs/MagneticField=Magnetometer
 sensor_msgs/NavSatFix=NavSat sensor_msgs/PointCloud2=PointCloudPacked std_msgs/Bool=Boolean
-std_msgs/Float64=Double tf2_msgs/TFMessage=Pose_V trajectory_msgs/JointTrajectory
+std_msgs/Empty std_msgs/Float64=Double tf2_msgs/TFMessage=Pose_V trajectory_msgs/JointTrajectory
 vision_msgs/Detection2DArray=AnnotatedAxisAligned2DBox_V
-vision_msgs/Detection3DArray=AnnotatedOriented3DBox_V
+vision_msgs/Detection3DArray=AnnotatedOriented3DBox_V std_msgs/String=StringMsg
 """
 ROS_TYPES = {
     gz_type or name.partition('/')[2]: name.replace('/', '/msg/')
@@ -84,6 +84,9 @@ magnetometer Magnetometer magnetometer {topic} @/magnetometer
 force_torque Wrench force_torque {topic} @/forcetorque
 logical LogicalCameraImage models {topic} @/logical_camera # ros_gz_bridge has it since 2.1.5
 contact Contacts contacts {contact/topic} @/contact
+TouchPlugin Boolean touched /{namespace}/touched /model/{P}/touch/touched
+DetachableJoint StringMsg detachable_joint/state {output_topic} \
+    /model/{child_model}/detachable_joint/state
 
 commands
 DiffDrive,MecanumDrive,TrackedVehicle,VelocityControl Twist cmd_vel {topic} ~/cmd_vel
@@ -100,6 +103,9 @@ JointController Double {joint_name}/cmd_vel {topic} ~/{sub_topic} ~/joint/{joint
     ?!use_actuator_msg
 JointController,JointPositionController Actuators actuators {topic} ~/{sub_topic} /actuators \
     ?use_actuator_msg
+ApplyJointForce Double {joint_name}/cmd_force ~/joint/{joint_name}/cmd_force
+DetachableJoint Empty detachable_joint/detach {detach_topic} {topic} ~/detachable_joint/detach
+DetachableJoint Empty detachable_joint/attach {attach_topic} ~/detachable_joint/attach
 JointTrajectoryController JointTrajectory joint_trajectory {topic} ~/joint_trajectory
 Thruster Double {joint_name}/cmd_thrust /{N}/{topic} /model/{N}/joint/{joint_name}/cmd_thrust \
     ?!use_angvel_cmd
@@ -120,6 +126,11 @@ name space of a plugin, ``{C}`` and ``{S}`` for the link of a sensor (``link/l``
 others for parameters. ``?name`` must be true, and ``?!name`` must not; ``*name`` has the frame of
 odometry. Of several poses of one model, those that are first here are followed.
 """
+LEFT_OUT = frozenset("""
+ApplyLinkWrench Breadcrumbs BuoyancyEngine Elevator EnvironmentalSystem Hydrodynamics
+KineticEnergyMonitor LogicalAudioSensorPlugin OpticalTactilePlugin PerformerDetector
+SpacecraftThrusterModel TrackController TrajectoryFollower TriggeredPublisher""".lower().split())
+"""Other classes that have topics of types that ros_gz_bridge converts, in small letters."""
 SENSOR_PATHS = tuple(dict.fromkeys(('topic', *re.findall(r'[{?!](\w+(?:/\w+)+)', _TOPICS))))
 """Elements of a sensor on which its topics depend."""
 STATE_GROUPS = ('joints', 'poses', 'odometry')

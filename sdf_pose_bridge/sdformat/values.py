@@ -258,10 +258,6 @@ def numbers_of(xml: XmlElement | None, default: tuple[float, ...]) -> tuple[floa
 
 
 def number_of_child(parent: XmlElement, path: str, default: float) -> float:
-    """
-    Return the number in a child element, or the default, as :func:`numbers_of`.
-
-    :param path: as for :func:`~sdf_pose_bridge.sdformat.xml_tree.child_at`.
-    """
+    """Return the number in the child element at a path, or the default, as `numbers_of`."""
     (number,) = numbers_of(child_at(parent, path), (default,))
     return number

@@ -93,11 +93,7 @@ def text_of(xml: XmlElement) -> str:
 
 
 def value_of(xml: XmlElement) -> str:
-    """
-    Return the value of an element with a single word or name.
-
-    :return: its text, stripped, each run of white space in it as one blank.
-    """
+    """Return the text of an element as one word or name, with single blanks in it alone."""
     text = text_of(xml)
     # Most values are plain names, which are recognized faster.
     return text if text.isidentifier() else ' '.join(words_of(text))

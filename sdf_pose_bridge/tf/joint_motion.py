@@ -284,11 +284,7 @@ class MovingFrames:
             rows, dofs, after = rows[~is_first], previous[~is_first], identities
 
     def transforms(self, values: Floats) -> PoseArray:
-        """
-        Return the transforms of the frames that move in their parents.
-
-        :return: shape (m, 7), pose of each frame in its parent; unit quaternions with w >= 0.
-        """
+        """Return the poses of moving frames in their parents, shape (m, 7), unit, w >= 0."""
         transforms = np.empty((0, 7))
         for number, (rows, displaced) in enumerate(self._parts):
             poses = displaced.poses(values)

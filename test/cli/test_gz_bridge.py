@@ -3,7 +3,7 @@
 """``sdf_pose gz_bridge``: both files that it writes, and what is wrong."""
 
 import pytest
-from sdf_texts import joint, model_file, world_file
+from sdf_texts import joint, model, model_file, plugin, world_file
 
 SENSORS = ('<sensor name="s" type="imu"><gz_frame_id>imu</gz_frame_id></sensor>'
            '<sensor name="l" type="lidar"/>')
@@ -55,6 +55,15 @@ def test_only_sensors_are_lazy(parsed):
 def test_a_topic_that_cannot_be_bridged_has_a_comment_with_the_reason(run_main):
     assert ('# /world/w/model/a/link/l/sensor/l/scan of gz.msgs.LaserScan: Gazebo sends nothing'
             in run_main('gz_bridge', 'two.sdf').stdout)
+
+
+def test_plugins_with_topics_that_are_not_known_are_named(run_main, files):
+    (files / 'lift.sdf').write_text(world_file(model('tower 1', (
+        plugin('Elevator') + '<plugin filename="ignition-gazebo-track-controller-system" name=""/>'
+        + plugin('Physics')))))
+    assert run_main('gz_bridge', 'lift.sdf').stdout.endswith(
+        'lazy: false\n# Elevator of "tower 1": add its topics\n'
+        '# TrackController of "tower 1": add its topics\n')
 
 
 def test_a_topic_of_several_robots_has_a_comment_that_names_them(run_main, files):

@@ -6,11 +6,12 @@ import re
 from string import Formatter
 
 from gazebo_facts import ROS_TYPES as ROS_FACTS
-from gazebo_facts import TOPICS
+from gazebo_facts import SYSTEMS, SYSTEMS_WITHOUT_TOPICS, TOPICS
 import pytest
 
 from sdf_pose_bridge.sdformat.gazebo_topics import (
     _key,
+    LEFT_OUT,
     ROS_TYPES,
     SENSOR_PATHS,
     TOPICS_BY_OWNER,
@@ -28,7 +29,7 @@ def names_of(owner, **parameters):
 
 
 @pytest.mark.parametrize('owner', [
-    '', 'MyPlugin', 'my_sensor', 'Physics', 'Imu', 'Contact', 'NavSat', 'ForceTorque'])
+    '', 'MyPlugin', 'my_sensor', *SYSTEMS_WITHOUT_TOPICS.split()])
 def test_an_unknown_plugin_or_sensor_has_no_topics(owner):
     assert topics_of(owner, VALUES) == []
 
@@ -81,6 +82,13 @@ def test_each_row_with_each_of_its_names_is_held_by_a_fact():
     assert held == {
         (owner, topic.gz_type, topic.ros_name, name) for owner, topics in TOPICS_BY_OWNER.items()
         for topic in topics for name in topic.names}
+
+
+def test_each_class_of_plugins_has_topics_or_is_named_or_has_none():
+    with_topics = {each.lower() for each in TOPICS_BY_OWNER if not each.islower()}
+    without = {*SYSTEMS_WITHOUT_TOPICS.lower().split()}
+    known = [*with_topics, *LEFT_OUT, *without]
+    assert sorted(known) == sorted(SYSTEMS.lower().split())
 
 
 SENSORS = {owner: topics for owner, topics in TOPICS_BY_OWNER.items() if owner.islower()}
