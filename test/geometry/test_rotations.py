@@ -83,7 +83,7 @@ def test_the_first_invalid_row_is_named(function):
 
 @pytest.mark.parametrize(('function', 'values'), [
     *itertools.product((quaternion_from_rpy, *FROM_QUATERNION), (
-        (), (1.0,), (1.0, 2.0), (0.0,) * 5, 'abc', (1.0, 'x', 0.0))),
+        (), (1.0,), (1.0, 2.0), (0.0,) * 5, 'abc', (1.0, 'x', 0.0), (1.0, None, 0.0))),
     *itertools.product((quaternion_from_matrix,), (
         (), ((1, 0, 0), (0, 1, 0)), ((1, 0), (0, 1), (0, 0)), 'abc')),
 ])

@@ -163,9 +163,9 @@ def anchors_setting(value: str) -> AnchorModels | AnchorPatterns:
 def directories_setting(values: Sequence[str]) -> tuple[Path, ...]:
     """Return the paths without empty ones."""
     try:
-        return tuple(Path(value).expanduser() for value in values if value)
+        return tuple(Path(path := value).expanduser() for value in values if value)
     except RuntimeError:
-        raise refusal(values, 'paths; "~name" needs a user of this name') from None
+        raise refusal(path, 'a path; "~name" needs a user of this name') from None
 
 
 def check_size(value: object, most_characters: int) -> None:

@@ -88,8 +88,8 @@ def test_taken(rule, value, setting):
 
 
 def test_directory_of_an_unknown_user_is_refused():
-    with pytest.raises(ValueError, match=r'no_such_user/models.*needs a user of this name'):
-        rules.directories_setting(['~no_such_user/models'])
+    with pytest.raises(ValueError, match=r'^is "~no_such_user/models"; .* a user of this name'):
+        rules.directories_setting(['models', '~no_such_user/models'])
 
 
 def test_directories_may_begin_with_that_of_the_user(monkeypatch):
