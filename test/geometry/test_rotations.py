@@ -36,10 +36,7 @@ from sdf_pose_bridge.geometry.sequences import ZYX
 IDENTITY = (0.0, 0.0, 0.0, 1.0)
 H = math.sqrt(0.5)
 EYE = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-FROM_QUATERNION = (
-    rpy_from_quaternion, matrix_from_quaternion,
-    canonical_quaternion,
-)
+FROM_QUATERNION = (rpy_from_quaternion, matrix_from_quaternion, canonical_quaternion)
 
 angles = st.floats(allow_nan=False, allow_infinity=False)
 rpys = st.tuples(angles, angles, angles)
@@ -168,7 +165,7 @@ def test_canonical_quaternions_are_returned_bit_for_bit(quat, scale):
 def test_the_first_component_of_a_half_turn_is_positive(quat, canonical):
     given, expected = ([*map(float, text.split())] for text in (quat, canonical))
     assert canonical_quaternion(given) == tuple(expected)
-    assert canonical_quaternion(np.array([given])).tolist() == [expected]
+    assert canonical_quaternion(np.array([given, IDENTITY])).tolist() == [expected, [*IDENTITY]]
 
 
 @pytest.mark.parametrize('function', [quaternion_from_rpy, *FROM_QUATERNION])
@@ -207,14 +204,6 @@ def test_yaw_is_zero_at_lock_and_pitch_exactly_a_right_angle(pitch):
     assert (answer[:, 1] == pitch).all()
     ones = [rpy_from_quaternion(quat) for quat in quats[:200].tolist()]
     assert {one[1:] for one in ones} == {(pitch, 0.0)}
-
-
-def test_near_lock_the_rotation_is_kept_where_gz_math_would_set_yaw_to_zero():
-    rpy = (0.3, math.pi / 2 - 1e-9, 0.1)
-    quat = quaternion_from_rpy(rpy)
-    assert ZYX.near_lock(np.array(quat))
-    answer = rpy_from_quaternion(quat)
-    assert exact_angle(exact_quaternion(rpy), exact_quaternion(answer)) <= MAX_ANGLE
 
 
 # One and many.
@@ -274,12 +263,6 @@ def test_rotation_vector_must_be_finite(bad):
 ])
 def test_rotation_vector_is_an_axis_times_an_angle(vector, quat):
     assert quaternion_from_rotation_vector(vector) == pytest.approx(quat, abs=3e-16)
-
-
-def test_rotation_vector_of_more_than_half_a_turn_becomes_shorter():
-    quat = quaternion_from_rotation_vector((0, 0, 4.0))
-    assert rotation_vector_from_quaternion(quat) == pytest.approx(
-        (0, 0, 4.0 - 2 * math.pi), abs=1e-15)
 
 
 def test_rotation_vector_of_half_a_turn_has_a_positive_first_component():
