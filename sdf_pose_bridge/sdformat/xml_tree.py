@@ -93,7 +93,7 @@ def text_of(xml: XmlElement) -> str:
 
 
 def value_of(xml: XmlElement) -> str:
-    """Return the text of an element as one word or name, with single blanks in it alone."""
+    """Return the text of an element, stripped, with each run of white space as one blank."""
     text = text_of(xml)
     # Most values are plain names, which are recognized faster.
     return text if text.isidentifier() else ' '.join(words_of(text))

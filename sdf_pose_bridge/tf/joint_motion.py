@@ -284,7 +284,7 @@ class MovingFrames:
             rows, dofs, after = rows[~is_first], previous[~is_first], identities
 
     def transforms(self, values: Floats) -> PoseArray:
-        """Return the poses of moving frames in their parents, shape (m, 7), unit, w >= 0."""
+        """Return the poses of the moving frames in their parents, shape (m, 7), canonical."""
         transforms = np.empty((0, 7))
         for number, (rows, displaced) in enumerate(self._parts):
             poses = displaced.poses(values)
