@@ -51,7 +51,7 @@ def loaded_scene_from_request(
         msg = 'model_name has no effect, because this is a world and not a file of one model'
         warnings += (SdfWarning('WARNING', msg, Place(path)),)
     scene = scene.with_model_name(request.model_name)
-    tree = tf_tree_from_scene(scene, options)
+    tree = tf_tree_from_scene(scene, options, finds_at_rest=True)
     joint_positions = None if tree.moving is None else JointPositions(
         scene, tree.moving.motion, options.model, request.unreported_joints,
         is_spawned=bool(request.model_name))

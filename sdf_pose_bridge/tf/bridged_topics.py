@@ -61,13 +61,6 @@ class BridgedTopic(NamedTuple):
         return f'/{{model}}/{self.ros_name.removeprefix(start)}' if is_below else self.ros_name
 
 
-def models_on(names: Sequence[str], topics: Sequence[BridgedTopic]) -> frozenset[int] | None:
-    """Return the models that topics of plugins are about; None if any name is another topic's."""
-    models = {name: each.models for each in topics for name in (each.ros_name, each.gz_name)}
-    return frozenset().union(*(models[name] for name in names)) if (
-        names and models.keys() >= {*names}) else None
-
-
 def bridged_topics(scene: Scene, groups: Collection[str], world: str = '') -> list[BridgedTopic]:
     """
     Find the topics of the plugins and sensors in the first world or model of a file, and /clock.

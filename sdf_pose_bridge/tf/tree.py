@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -26,10 +26,9 @@ from sdf_pose_bridge.nearest_names import hint_from_names
 from sdf_pose_bridge.printed_text import quoted_names
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Joint, ReadOnly, Scene
-from sdf_pose_bridge.sdformat.gazebo_topics import STATE_GROUPS
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.anchors import AnchorModels, AnchorPatterns, detached_bodies
-from sdf_pose_bridge.tf.bridged_topics import bridged_topics, models_on
+from sdf_pose_bridge.tf.followed import followed_from_topics
 from sdf_pose_bridge.tf.frame_ids import frame_ids_with_sensors, FrameNames, FrameNaming
 from sdf_pose_bridge.tf.frames import (
     check_frames_of_sensors,
@@ -166,12 +165,15 @@ class TfTree(ReadOnly):
         return int(np.count_nonzero(self.parents != NO_PARENT))
 
 
-def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree:
+def tf_tree_from_scene(
+    scene: Scene, options: TfOptions | None = None, *, finds_at_rest: bool = False,
+) -> TfTree:
     """
     Make the TF tree of a scene.
 
     :param scene: the scene; of several worlds, the first one counts.
     :param options: the elements that become frames, and the rules for their names.
+    :param finds_at_rest: whether to fill :attr:`TfTree.at_rest`, which takes long for many joints.
     :raises SdfError: if two frames would share an id, an id would be empty, or the model to
         publish does not exist; ``errors`` has all errors that were found.
     """
@@ -193,15 +195,11 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     if anchors is AnchorModels.AUTO and options.follows_models:
         anchors = AnchorModels.ALL
     is_detached = detached_bodies(scene, tf_parents, anchors, problems)
-    topics = bridged_topics(scene, STATE_GROUPS, WORLD_FRAME) if scene.plugins else []
-    owners = models_on(options.joint_states_topics, topics)
-    joints = {body: each for body, each in tf_parents.joints.items() if options.use_joint_states
-              and (owners is None or scene.parents.item(each.element) in owners)}
-    every = JointMotion(scene, tf_parents if not options.follows_models else (
-        tf_parents.with_free_models(scene, is_detached, options.model)), options.frame_names)
-    if options.follows_models:
-        tf_parents = tf_parents.with_free_models(
-            scene, is_detached, options.model, models_on(options.model_pose_topics, topics))
+    followed = followed_from_topics(
+        scene, tf_parents, is_detached, options.model,
+        options.joint_states_topics if options.use_joint_states else None,
+        options.model_pose_topics if options.follows_models else None)
+    tf_parents, joints = followed.tf_parents, followed.joints
     nearest_frames, parents = _nearest_frames_and_parents(scene, tf_parents, elements, is_detached)
     frames = Frames(list(frame_ids.values()), elements, parents, scene.poses[elements])
     optical_frames = optical_frames_of_cameras(
@@ -218,7 +216,8 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     _warn_of_loops(tf_parents, scene, problems)
     if options.has_joint_links:
         frames = frames.with_frames(frames_at_joints(
-            frames, scene, every, tf_parents, naming, options.root_frame, joints))
+            frames, scene, JointMotion(scene, tf_parents, options.frame_names), tf_parents, naming,
+            options.root_frame, joints))
     pose_frame = options.pose_frame or options.root_frame
     ids = [options.root_frame, *frames.ids]
     if pose_frame not in ids:
@@ -237,7 +236,7 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
             for each in sorted(others.keys() - {'', *ids})])
         moving = MovingFrames(motion, frames.poses, frames.parents, frames.owners, reference)
         odometry = odometry_from_scene(
-            scene, topics if options.follows_models else [], motion, problems)
+            scene, followed.topics if options.follows_models else [], motion, problems)
     return TfTree(
         root_frame=options.root_frame,
         frame_ids=tuple(frames.ids),
@@ -251,24 +250,14 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
         nearest_frames=nearest_frames,
         moving=moving,
         odometry=odometry,
-        at_rest=_at_rest(scene, every, options.model, {
-            *tf_parents.free_models.values(), *(each.element for each in joints.values())}),
-        topic_models={name: each.model for each in topics if each.model
+        at_rest=followed.at_rest(
+            scene, elements_in_model(scene, options.model), options.frame_names,
+        ) if finds_at_rest else ([], []),
+        topic_models={name: each.model for each in followed.topics if each.model
                       for name in (each.ros_name, each.gz_name)},
         world=scene.world_names.get(0, ''),
         warnings=problems.warnings,
     )
-
-
-def _at_rest(
-    scene: Scene, every: JointMotion, model: str, moving: Container[int],
-) -> tuple[Sequence[str], Sequence[str]]:
-    is_inside = elements_in_model(scene, model)
-    joints = {each.joint.element: each.name for each in reversed(every.dofs)
-              if is_inside[each.joint.element] and each.axis.mimic is None}
-    models = zip(every.elements[len(every.dofs):], every.names[len(every.dofs):], strict=True)
-    return ([joints[each] for each in sorted(joints) if each not in moving],
-            [name for each, name in models if each not in moving])
 
 
 def _published_elements(scene: Scene, options: TfOptions, problems: Problems) -> Indices:

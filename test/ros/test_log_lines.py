@@ -198,8 +198,10 @@ def test_joints_that_stand_still_are_counted_where_they_are_published():
     scene = load_text(world_file(arm.format('left', '') + arm.format('right', '') + still))
     for model, count in (('', '2 joints that can move, for example "left/j";'),
                          ('right', '1 joint that can move, for example "right/j";')):
-        assert count in line_about_rest(tf_tree_from_scene(scene, TfOptions(model=model)))
-    assert line_about_rest(tf_tree_from_scene(load_text(world_file(still)))) == ''
+        assert count in line_about_rest(tf_tree_from_scene(
+            scene, TfOptions(model=model), finds_at_rest=True))
+    assert line_about_rest(tf_tree_from_scene(
+        load_text(world_file(still)), finds_at_rest=True)) == ''
 
 
 @pytest.mark.parametrize('content', [
@@ -210,11 +212,11 @@ def test_joints_that_stand_still_are_counted_where_they_are_published():
 def test_joints_that_stand_still_are_those_that_messages_have_to_name(content):
     scene = load_text(model_file(
         '<link name="a"/><link name="b"/><link name="c"/>' + content, version='1.11'))
-    tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
+    tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True), finds_at_rest=True)
     positions = JointPositions(scene, tree.moving.motion)
     (first,), _ = positions.unreported()
     assert line_about_rest(tree) == ''
-    line = line_about_rest(tf_tree_from_scene(scene))
+    line = line_about_rest(tf_tree_from_scene(scene, finds_at_rest=True))
     assert line.startswith(f'fixed as in the file: 1 joint that can move, for example "{first}";')
 
 
