@@ -121,8 +121,6 @@ class Format(NamedTuple):
         if self.angle == DEGREES:
             numbers = radians_from_degrees(numbers) if self.sequence else np.radians(numbers)
         quats = self.rotation.quaternions_from_numbers(numbers)
-        if not self.position:
-            return quats
         is_exact = rows[:, self.last_row] == LAST_ROW[:len(self.last_row)]
         if not is_exact.all():
             row = int(np.argmin(is_exact.all(axis=1)))

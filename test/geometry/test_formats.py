@@ -351,8 +351,7 @@ def test_the_result_shares_no_memory_with_the_values(name):
 # Rotations without translation.
 
 @pytest.mark.parametrize(
-    ('source', 'target'), [*itertools.product(ROTATION_FORMATS, repeat=2)]
-)
+    ('source', 'target'), [*itertools.product(ROTATION_FORMATS, repeat=2)])
 def test_rotations_convert_between_all_formats(source, target):
     quarter = {
         'rpy': (0, 0, math.pi / 2),
@@ -375,3 +374,11 @@ def test_rotations_do_not_convert_to_poses():
 
 
 # Rounding errors
+
+
+@pytest.mark.parametrize(('source', 'given', 'same'), [
+    ('rotation_vector_degrees', (0, 400, 300), (0, 112, 84)),
+    ('rpy_degrees', (0, 0, 3.6e17 + 64), (0, 0, 64))])
+def test_whole_turns_do_not_count(source, given, same):
+    assert np.allclose(
+        *(converted_rotations(each, source, 'quaternion') for each in (given, same)))
