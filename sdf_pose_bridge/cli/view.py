@@ -32,7 +32,7 @@ from sdf_pose_bridge.cli.arguments import (
 )
 from sdf_pose_bridge.cli.input_files import loader, scene_from_file, STANDARD_INPUT
 from sdf_pose_bridge.cli.printing import CommandError, print_problems
-from sdf_pose_bridge.cli.viewer import LIBRARIES, UntestedViserError
+from sdf_pose_bridge.cli.viewer import LIBRARIES
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.export.pose_setting import pose_change
 from sdf_pose_bridge.file_change import replace_file, signals_wait
@@ -116,7 +116,7 @@ def run(options: argparse.Namespace) -> int:
                 Units(options.length_unit, options.angle_unit), meshes,
                 partial(call, partial(pose_change, load=loader(path, options, shapes=True)))
                 if options.edit else None)
-        except UntestedViserError as error:
+        except NotImplementedError as error:
             raise CommandError(str(error)) from error
         with contextlib.closing(pages):
             for line in () if errors else pages.reasons:
@@ -144,7 +144,8 @@ def _viewer() -> ModuleType:
         for library in LIBRARIES:
             name, oldest = re.split('>=|,', library)[:2]
             found = version(name)
-            if _numbers(found) < _numbers(oldest):
+            numbers = [[*map(int, re.findall(r'\d+', each)[:3])] for each in (found, oldest)]
+            if numbers[0] < numbers[1]:
                 msg = f'this needs {name} {oldest} or newer and found {found}: {_how_to_install()}'
                 raise CommandError(msg)
         return importlib.import_module('sdf_pose_bridge.cli.viewer.page')
@@ -152,10 +153,6 @@ def _viewer() -> ModuleType:
         msg = (f'this needs viser, trimesh and pycollada, and {error.name} is missing: '
                f'{_how_to_install()}')
         raise CommandError(msg) from None
-
-
-def _numbers(version: str) -> tuple[int, ...]:
-    return tuple(map(int, re.findall(r'\d+', version)[:3]))
 
 
 def _how_to_install() -> str:
@@ -195,6 +192,8 @@ def _follow(pages: Any, watcher: FileWatcher, load: Callable[[], Scene]) -> None
         watcher.watch(scene.files, read_since_ns)
         pages.show(scene)
     except SdfError as error:
+        # The scene that is shown may lack the file that is broken.
+        watcher.watch_also(str(each.place.file) for each in error.errors if each.place)
         pages.show_errors(_lines(error.errors))
 
 

@@ -9,6 +9,7 @@ import signal
 import socket
 import sys
 from threading import Event
+import time
 from types import SimpleNamespace
 from urllib.parse import urlsplit
 import webbrowser
@@ -18,6 +19,9 @@ from folders import ROOT
 import mesh_texts
 import needs
 import pytest
+
+from sdf_pose_bridge import load
+from sdf_pose_bridge.file_watcher import FileWatcher
 
 MESH = """<sdf version="1.9"><model name="m"><link name="l"><visual name="v"><geometry>
   <mesh><uri>none.stl</uri></mesh></geometry></visual></link></model></sdf>"""
@@ -180,6 +184,25 @@ def test_no_browser_is_opened_where_a_tab_asks_for_the_page(monkeypatch, was_ask
     monkeypatch.setattr(webbrowser, 'open', opened.append)
     view._open(SimpleNamespace(address='http://127.0.0.1:1/a/', was_asked=asked), 1)
     assert bool(opened) is not was_asked
+
+
+def test_broken_file_that_is_included_anew_is_read_again_when_it_is_mended(tmp_path):
+    from sdf_pose_bridge.cli import view
+    main, part = tmp_path / 'main.sdf', tmp_path / 'part.sdf'
+    main.write_text(MESH)
+    scene, watcher, shown = load(main), FileWatcher(), []
+    watcher.watch(scene.files, time.time_ns())
+    pages = SimpleNamespace(act=lambda _: None, show=shown.append,
+                            show_errors=lambda lines: shown.append([*lines]))
+    part.write_text('<sdf')
+    include = '<include><uri>part.sdf</uri></include>'
+    for file, text in (
+            (main, f'<sdf version="1.11"><world name="w">{include}</world></sdf>'), (part, MESH)):
+        file.write_text(text)
+        view._follow(pages, watcher, lambda: load(main))
+    (error,), mended = shown
+    assert 'part.sdf' in error
+    assert mended.has('m::l')
 
 
 @pytest.mark.parametrize('port', ['80000', '-1', 'http'])
