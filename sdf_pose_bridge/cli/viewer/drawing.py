@@ -95,20 +95,23 @@ class VisiblePart:
                 for surface in self.surfaces]})
         """The names that the page shows at the pointer: those of all axes, and of the copies of
         each surface, in the order of the nodes; of a copy its frame, and the body in it."""
-        self._bodies = np.array(
+        self.bodies = np.array(
             [element for surface in self.surfaces for element in surface.elements], int)
+        """The visual or collision of each copy of each surface."""
         boxes = boxes_of_surfaces(scene, self.surfaces)
         self.size_m = _extent_m(origins, boxes)
         """The extent of everything."""
+        self.range_m = 0.001 * self.size_m, 100.0 * self.size_m
+        """The distances between which a camera sees."""
         origins = origins[self.frames]
         robot = np.concatenate([
             origins[shown.is_in_robot[elements[self.frames]]],
             # A model alone is shown as a whole.
-            boxes[shown.is_in_robot[self._bodies]].mean(axis=1) if scene.world_names
+            boxes[shown.is_in_robot[self.bodies]].mean(axis=1) if scene.world_names
             else boxes.reshape(-1, 3)])
-        models = scene.parents[scene.parents[self._bodies]]
+        models = scene.parents[scene.parents[self.bodies]]
         is_part = np.bincount(scene.parents[scene.kinds == Kind.LINK], minlength=1)[models] > 1
-        is_plane = np.array([scene.shapes[body].type == 'plane' for body in self._bodies], bool)
+        is_plane = np.array([scene.shapes[body].type == 'plane' for body in self.bodies], bool)
         bounds = bounds_of_interest(origins, boxes[~is_plane], is_part[~is_plane], robot)
         self.view_m = math.dist(*bounds) or self.size_m
         """The extent of the first view, without axes."""
@@ -123,7 +126,7 @@ class VisiblePart:
 
     def bounds_of_frame(self, shown: ShownScene, frame: int) -> Floats:
         """Return the lowest and the highest corner of a frame and the bodies in its element."""
-        is_in = shown.scene.are_in([shown.element_of(frame)])[self._bodies]
+        is_in = shown.scene.are_in([shown.element_of(frame)])[self.bodies]
         reach_m = np.array([[-3.0], [3.0]]) * self.axes_length_m
         return bounds_of_points(
             shown.poses[frame, :3] + reach_m, boxes_of_surfaces(shown.scene, self.surfaces)[is_in])
@@ -135,12 +138,12 @@ class Drawing:
 
     :param name: the name of their parent node. It must differ from the previous one, as a browser
         mixes up nodes that are removed and added again at once.
-    :param select: called with the clicked frame, an index into the TF tree.
+    :param select: called with the id of the clicked frame.
     """
 
     def __init__(
         self, nodes: viser.SceneApi, name: str, visible: VisiblePart,
-        select: Callable[[int], None],
+        select: Callable[[str], None],
     ) -> None:
         self._nodes, self._name, self._select = nodes, name, select
         self._node = nodes.add_frame(name, show_axes=False)
@@ -246,7 +249,8 @@ class Drawing:
 
     def _add_surface(self, number: int, surface: DrawnSurface) -> Any:
         is_collision, shown = surface.kind == Kind.COLLISION, self.visible.shown
-        name = f'{self._name}/{surface.kind.label}s/{number}'
+        # The script counts the children of the drawing.
+        name = f'{self._name}/{surface.kind.label} {number}'
         places = _places(shown.scene.poses[surface.elements])
         if surface.part.glb:
             return self._nodes.add_batched_glb(
@@ -264,7 +268,8 @@ class Drawing:
         return copies
 
     def _select_by_click(self, copies: Any, frames: NDArray[Any]) -> None:
-        copies.on_click(lambda event: self._select(int(frames[event.instance_index or 0])))
+        ids = self.visible.shown.ids
+        copies.on_click(lambda event: self._select(ids[frames[event.instance_index or 0]]))
 
 
 def _places(poses: Floats) -> tuple[Floats, Floats]:

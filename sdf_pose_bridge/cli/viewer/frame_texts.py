@@ -13,7 +13,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from sdf_pose_bridge import Pose, Scene
+from sdf_pose_bridge import Kind, Pose, Scene
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.export.pose_setting import place_of_pose
 from sdf_pose_bridge.geometry.formats import converted_poses
@@ -147,8 +147,11 @@ def _pose_in_file(shown: ShownScene, frame: int, units: Units) -> str:
     scene, element = shown.loaded, shown.element_of(frame)
     if element < 0:
         return ''
-    path, line, is_written = place_of_pose(scene, element)
+    path, line, is_written = place = place_of_pose(scene, element)
     reference = int(scene.references[element])
+    if scene.kinds[reference] == Kind.JOINT and place_of_pose(scene, reference) == place:
+        # The <origin> of a joint of URDF, which places the link too.
+        element, reference = reference, int(scene.references[reference])
     pose = scene.relative_pose_of(scene.placements.get(element, element), reference)
     return (f'in the file {Path(path).resolve()}:{line}{_relative_to(scene, element, reference)}: '
             + (', '.join(_texts(units, pose)) if is_written else 'no pose'))
@@ -208,16 +211,17 @@ def html_of_tree(
         if wanted in frame_id.lower() and not is_name_of_proxy(
                 frame_id.rpartition('/')[2]):
             text = frame_id if search else shown.short_names[index]
-            name, sign = escaped(text), _FOLDS[frame_id in folded] if below and not search else ''
+            name, data = escaped(text), html.escape(frame_id)
+            sign = _FOLDS[frame_id in folded] if below and not search else ''
             rows.append(
                 f'<div role=none style="padding-left:{0 if search else min(depth, 20)}em">'
-                f'<button tabindex=-1 data-ask="fold {index}" aria-label="fold {name}"'
+                f'<button tabindex=-1 data-ask="fold {data}" aria-label="fold {name}"'
                 f' aria-pressed={str(frame_id in folded).lower()}>{sign}</button>'
                 f'<b title="{kind}" aria-hidden=true>{_SIGNS.get(kind, "+")}</b>'
-                f'<button tabindex=-1 data-ask="select {index}" role=treeitem'
+                f'<button tabindex=-1 data-ask="select {data}" role=treeitem'
                 f' title="{escaped(frame_id)}" aria-label="{name}, {kind}" aria-level={depth + 1}'
                 f'{" class=selected aria-selected=true" if frame_id == selected else ""}>'
-                f'{name}</button><button tabindex=-1 data-ask="hide {index}" title="show or hide"'
+                f'{name}</button><button tabindex=-1 data-ask="hide {data}" title="show or hide"'
                 f' aria-label="hide {name}" aria-pressed={str(frame_id in hidden).lower()}>'
                 f'{_EYES[frame_id in hidden]}</button></div>')
         if search or frame_id not in folded:

@@ -97,7 +97,7 @@ class JointSliders:
                 'all joints', ('home', 'middle'),
                 hint='home is zero, or the nearest limit; middle is between the limits')
             self._switch = gui.add_checkbox('move each joint', False, hint='through its range')
-            self._joints = {
+            self.joints = {
                 name: _Joint(gui, (short, name), limits, positions.get(name, 0.0), units, events)
                 for (name, limits), short in zip(
                     ranges.items(), short_names(ranges), strict=True)}
@@ -107,22 +107,22 @@ class JointSliders:
     @property
     def positions(self) -> dict[str, float]:
         """The positions of the joints, in radians or metres."""
-        return {name: joint.position for name, joint in self._joints.items()}
+        return {name: joint.position for name, joint in self.joints.items()}
 
     def refresh(self) -> str:
         """Read all fields and sliders; return in HTML the reasons why texts are rejected."""
-        reasons = [joint.refresh() for joint in self._joints.values()]
+        reasons = [joint.refresh() for joint in self.joints.values()]
         return html_of_lines('errors', filter(None, reasons))
 
     def _move_all(self, place: str) -> None:
         self._switch.value, self.moves = False, iter(())
-        for name, joint in self._joints.items():
+        for name, joint in self.joints.items():
             limits = self.ranges[name]
             joint.move(0.5 * (limits.lower + limits.upper) if place == 'middle' else 0.0)
 
     def _move_through_ranges(self) -> None:
         def moves() -> Iterator[None]:
-            for name, joint in self._joints.items():
+            for name, joint in self.joints.items():
                 limits = self.ranges[name]
                 places = joint.position, limits.upper, limits.lower, joint.position
                 for part in np.linspace(0.0, 3.0, _STEPS):

@@ -138,7 +138,9 @@
     while (node && !above.has(node.parent)) node = node.parent;
     if (!node) return {};
     const nodes = node.parent.children;
-    return {name: bodies[nodes.indexOf(node) - nodes.length + bodies.length]?.[hit.instanceId],
+    const before = bodies.slice(0, nodes.indexOf(node) - nodes.length + bodies.length).flat();
+    const number = before.length + hit.instanceId;
+    return {name: bodies.flat()[number], number,
             // hit.point is in the frame of the copies.
             point: frames.worldToLocal(raycaster.ray.at(hit.distance, hit.point)).toArray()};
   };
@@ -165,19 +167,31 @@
   });
   // It is typed into a control that is not seen, with a number, as the same text is no change.
   const asked = () => document.querySelector('div:has(> .asked) + * input');
-  const tell = ask => {
+  const tell = (...asks) => {
     Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, 'value').set.call(
-      asked(), `${performance.now()} ${ask}`);
+      asked(), `${performance.now()} ${JSON.stringify(asks)}`);
     asked().dispatchEvent(new Event('input', {bubbles: true}));
   };
-  let hasEnded = false, isToBeDark = false;
+  // What the tab shows, as requests for the page of the next start.
+  const shownNow = () => {
+    const at = point => frames.worldToLocal(point.clone()).toArray();
+    const {controls} = scene?.__r3f.root.getState() ?? {};
+    return [...JSON.parse(given('kept', '[]')), ...controls && frames.parent ? [
+      ['camera', ...at(camera.position), ...at(controls.getTarget(camera.position.clone()))]] : []];
+  };
+  let hasEnded = false, kept;
   // viser connects in a worker, which tells the page.
   const ViserWorker = window.Worker;
   window.Worker = class extends ViserWorker {
-    constructor(...given) {
-      super(...given);
+    constructor(...options) {
+      super(...options);
       this.addEventListener('message', ({data: {type}}) => {
-        if (type === 'connected') isToBeDark = matchMedia('(prefers-color-scheme: dark)').matches;
+        if (type === 'connected') {
+          const {matches: isDark} = matchMedia('(prefers-color-scheme: dark)');
+          kept = sessionStorage.kept ? JSON.parse(sessionStorage.kept)
+            : given('kept') ? shownNow() : [['set', 'dark background', isDark]];
+          delete sessionStorage.kept;
+        }
         if (type === 'connected' || type === 'closed') { hasEnded = type === 'closed'; update(); }
       });
     }
@@ -192,7 +206,9 @@
     const address = `/${digits.slice(0, 32)}/`;
     // The program that ends may still answer.
     if (address === location.pathname) return;
-    if ((await fetch(address)).ok && hasEnded) location.replace(address);
+    if (!(await fetch(address)).ok || !hasEnded) return;
+    sessionStorage.kept = JSON.stringify(shownNow());
+    location.replace(address);
   };
   setInterval(() => { if (hasEnded && !document.hidden) follow().catch(() => {}); }, 500);
   const strip = document.createElement('div');
@@ -215,14 +231,14 @@
     const canvas = event.target, isDrag = pressed && Math.hypot(
       event.clientX - pressed.clientX, event.clientY - pressed.clientY) > 3;
     if (given('points') !== 'True' || canvas.tagName !== 'CANVAS' || isDrag) return;
-    const {point} = bodyAt(event, canvas.getBoundingClientRect());
-    if (point) tell(`point ${point.join(' ')}`);
+    const {name, number, point} = bodyAt(event, canvas.getBoundingClientRect());
+    if (name) tell(['point', number, ...point]);
   });
   const updateFocus = row => {
     (row ?? document.querySelector('.rows [data-ask^=select]'))?.setAttribute('tabindex', 0);
     const {ask} = focused?.dataset ?? {};
     if (ask && !focused.isConnected) {
-      (document.querySelector(`[data-ask="${ask}"]`) ?? field)?.focus();
+      (document.querySelector(`[data-ask="${CSS.escape(ask)}"]`) ?? field)?.focus();
     }
     const found = awaited && document.querySelector(awaited);
     if (found) awaited = null;
@@ -257,7 +273,10 @@
   };
   const update = () => {
     nameControls();
-    if (isToBeDark && asked()) { isToBeDark = false; tell('dark'); }
+    if (kept && asked()) {
+      tell(['width', innerWidth], ...kept);
+      kept = null;
+    }
     const row = document.querySelector('.rows .selected'), rows = row?.closest('.rows');
     if (row && row.dataset.ask !== selected) {
       rows.scrollTop = row.offsetTop - rows.offsetTop - 0.5 * rows.clientHeight;
@@ -284,7 +303,7 @@
       event.preventDefault();
       target.click();
     }
-    if (key === 'Escape' && given('points') === 'True') tell('end measuring');
+    if (key === 'Escape' && given('points') === 'True') tell(['set', 'measure points', false]);
     if (!target.closest('[role=slider], input, textarea, .rows, .strip')) return;
     event.stopPropagation();
     // Otherwise the same key presses the button that gets the keyboard.
@@ -294,7 +313,7 @@
     } else if (key === 'Enter' && target.matches(FIELD)) {
       awaited = '.strip :is([data-ask^=write], [data-ask=cancel])';
     } else if (key === 'Escape' && (target.matches(FIELD) || target.closest('.strip'))) {
-      tell('cancel');
+      tell(['cancel']);
     } else if (key.startsWith('Arrow') && target.closest('.rows')) {
       event.preventDefault();
       moveInTree(target, key);
@@ -311,6 +330,6 @@
       target.textContent = 'copied';
       setTimeout(() => { target.textContent = 'copy'; }, 1000);
     });
-    if (ask) tell(ask);
+    if (ask) tell(/^(select|fold|hide) ([^]*)/.exec(ask)?.slice(1) ?? [ask]);
   });
 })();

@@ -5,15 +5,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+import contextlib
 from functools import partial
 from itertools import cycle
+import json
+import math
 from pathlib import Path
 import threading
+from typing import Any
 
 import numpy as np
 import viser
 
-from sdf_pose_bridge import Scene
+from sdf_pose_bridge import Pose, Scene
 from sdf_pose_bridge.cli.viewer.drawing import Drawing, GROUPS, HIDDEN_AT_FIRST, NAMES, VisiblePart
 from sdf_pose_bridge.cli.viewer.frame_texts import (
     html_of_data,
@@ -22,11 +26,10 @@ from sdf_pose_bridge.cli.viewer.frame_texts import (
     html_of_points,
     html_of_reasons,
     html_of_selection,
-    html_of_tree,
 )
 from sdf_pose_bridge.cli.viewer.joint_sliders import JointSliders
 from sdf_pose_bridge.cli.viewer.meshes import ALLOWANCE, MeshReader
-from sdf_pose_bridge.cli.viewer.pose_edit import FindChange, PoseEdit
+from sdf_pose_bridge.cli.viewer.selected_frame import FindChange, PoseEdit, SelectedFrame
 from sdf_pose_bridge.cli.viewer.server import Events, page_with_script, server_for_its_owner
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.cli.viewer.view_point import (
@@ -35,6 +38,7 @@ from sdf_pose_bridge.cli.viewer.view_point import (
     view_in_window,
     view_of_bounds,
 )
+from sdf_pose_bridge.geometry.poses import pose_product, relative_pose
 from sdf_pose_bridge.geometry.units import DEGREES, RADIANS, Units
 from sdf_pose_bridge.printed_text import printable
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
@@ -42,82 +46,9 @@ from sdf_pose_bridge.tf.tree import TfOptions
 
 _ANGLES = {unit.name: unit for unit in (RADIANS, DEGREES)}
 
-_MOST_CHOICES = 1000
 _PANEL_WIDTH, _PANEL_PART, _LEAST_WIDTH = 360, 0.35, 720
 """The largest width of the panel in pixels and as a part of a window, and the least width of a
 window in which it is open at first."""
-
-
-def _set_range(
-    camera: viser.CameraHandle | viser.InitialCameraConfig, visible: VisiblePart,
-) -> None:
-    """Set the distances between which a camera sees."""
-    camera.near, camera.far = 0.001 * visible.size_m, 100.0 * visible.size_m
-
-
-class SelectedFrame:
-    """A given folder with the tree of frames, and one of the selected frame."""
-
-    def __init__(self, gui: viser.GuiApi, folder: viser.GuiFolderHandle, events: Events) -> None:
-        self._ids: tuple[str, ...] = ()
-        self._frame_id = ''
-        self._folded: set[str] = set()
-        self.hidden: set[str] = set()
-        """The ids of the frames that are hidden with all that is in them."""
-        with folder:
-            self._search = gui.add_text('search', '')
-            self._rows = gui.add_html('')
-        self._folder = gui.add_folder('Selected frame', visible=False)
-        with self._folder:
-            self._choice = gui.add_dropdown(
-                'relative to', ('',), hint='for the pose and the distance')
-            measure = gui.add_button(
-                'measure from this frame', hint='to frames that are selected next', color='gray')
-            self._description = gui.add_html('')
-        events.when(self._search.on_update)
-        events.when(self._choice.on_update)
-        events.when(measure.on_click, self._measure_from_here)
-
-    @property
-    def frame(self) -> int:
-        """Index of the selected frame, or ``ROOT_IS_PARENT``, which is -1, for none."""
-        return self._index(self._frame_id)
-
-    @property
-    def reference(self) -> int:
-        """Index of the frame to which its pose is relative, or ``ROOT_IS_PARENT``."""
-        return self._index(self._choice.value)
-
-    def _index(self, frame_id: str) -> int:
-        return self._ids.index(frame_id) if frame_id in self._ids else ROOT_IS_PARENT
-
-    def answer(self, verb: str, frame: int) -> None:
-        """Select ("select", "click"), "fold" or "hide" a frame, or undo the latter."""
-        if frame >= len(self._ids):
-            return
-        if verb in {'select', 'click'}:
-            self._frame_id = self._ids[frame]
-        else:
-            ids = self._folded if verb == 'fold' else self.hidden
-            ids ^= {self._ids[frame]}
-
-    def list_frames(self, shown: ShownScene) -> None:
-        """List the frames of a scene; the selected one stays."""
-        self._ids = shown.tree.frame_ids
-        choices = (shown.tree.root_frame, *self._ids[:_MOST_CHOICES])
-        if choices != self._choice.options:
-            self._choice.options = choices
-        self._rows.content = html_of_tree(
-            shown, self._search.value, self._frame_id, self._folded, self.hidden)
-
-    def describe(self, html: str) -> None:
-        """Show the description of the selected frame; empty for none."""
-        self._folder.visible = bool(html)
-        self._description.content = html
-
-    def _measure_from_here(self) -> None:
-        if self.frame >= 0 and self._frame_id in self._choice.options:
-            self._choice.value = self._frame_id
 
 
 class Page:
@@ -129,7 +60,10 @@ class Page:
     ) -> None:
         self._client, self._shown, self._meshes = client, shown, meshes
         self._events, self._hidden, gui = Events(wake), {*HIDDEN_AT_FIRST}, client.gui
-        self._dock_panel()
+        self.units = units
+        """The units of the poses and sliders that are shown."""
+        gui.main_panel.dock_right()
+        gui.main_panel.set_width(_PANEL_WIDTH)
         self._reasons = gui.add_html('')
         # The script reads these in a hidden panel that is never folded, as a folded panel has no
         # content.
@@ -138,7 +72,7 @@ class Page:
         with data.add_tab('data'):
             self._data = {
                 name: gui.add_html('')
-                for name in ('errors', 'strip', 'names', 'labels', 'opacity', 'points')}
+                for name in ('errors', 'strip', 'names', 'labels', 'opacity', 'points', 'kept')}
             gui.add_html('<div class="asked"></div>')
             asked = gui.add_text('asked', '')
         self._events.when(asked.on_update, lambda: self._answer(asked.value.partition(' ')[2]))
@@ -147,37 +81,35 @@ class Page:
         self._edit = None if find_change is None else PoseEdit(
             client, shown, find_change, self._events, self.show)
         self._selected = SelectedFrame(gui, folder_of_frames, self._events)
-        self._angles, self._dark, self._measures = self._add_view_controls(units)
-        self._points: list[list[float]] = []
-        self._switches = self._add_switches()
+        self._controls = dict[str, Any]()
+        """Those whose values the page of the next start gets."""
+        self._add_view_controls(units)
+        self._points, self._lost, self._drawn = list[tuple[int, Pose]](), '', shown
+        self._add_switches()
         self._joints = JointSliders(gui, shown.joints, {}, units, self._events)
         self._node_names = cycle(('/drawing', '/other drawing'))
         self._drawing = self._new_drawing()
         self.show(shown)
-        self.show_errors(errors)
-        if client.camera.aspect < 1.0:
-            self._look('home')
-
-    @property
-    def units(self) -> Units:
-        """The units of the poses and sliders that are shown."""
-        return self._joints.units
+        self.tell_script('errors', errors)
+        self._look('home')
 
     def show(self, shown: ShownScene) -> None:
         """Show another scene; hidden groups, the selected frame and positions of joints stay."""
         before, self._shown = self._shown, shown
+        old, new = before.scene, shown.scene
+        points = [(body, point) for each, point in self._points
+                  for body in new.elements_called(old.names[each])
+                  if shown.is_in_model[body] and new.kinds[body] == old.kinds[each]]
+        if len(points) < len(self._points):
+            points, self._lost = [], '<div>the points are gone with their body</div>'
+        self._points = points
         with self._client.atomic():
             if {*shown.labels} != {*before.labels}:
                 self._switches.remove()
-                self._switches = self._add_switches(self._switches.order)
+                self._add_switches(self._switches.order)
             self._refresh()
             if not before.tree.frame_ids:
-                _set_range(self._client.camera, self._drawing.visible)
                 self._look('home')
-
-    def show_errors(self, errors: str) -> None:
-        """Show the errors of the file, in HTML, over its last scene."""
-        self._tell_script('errors', errors)
 
     def act(self) -> None:
         """Process the requests of the tab."""
@@ -193,7 +125,7 @@ class Page:
     def _refresh(self) -> None:
         """Show the current state of the controls."""
         shown, selected, edit = self._shown, self._selected, self._edit
-        units = self.units._replace(angle=_ANGLES[self._angles.value])
+        self.units = units = self.units._replace(angle=_ANGLES.get(self._angles.value, RADIANS))
         refusals = self._joints.refresh()
         # Many sliders take a browser long.
         if (shown.joints, units) != (self._joints.ranges, self._joints.units):
@@ -215,17 +147,25 @@ class Page:
         if frame >= 0:
             strip = html_of_selection(shown, drawn, frame, reference, units) + strip
         ends = drawn.poses[[] if ROOT_IS_PARENT in (reference, frame) else [reference, frame], :3]
+        self._drawn = drawn
         if self._measures.value:
-            ends = np.array(self._points).reshape(-1, 3)
-            strip = html_of_points(drawn, ends, frame, units.length) + strip
+            ends = np.array([
+                pose_product(drawn.scene.pose_of(body), point)[:3]
+                for body, point in self._points]).reshape(-1, 3)
+            strip = self._lost + html_of_points(drawn, ends, frame, units.length) + strip
         else:
-            self._points = []
-        self._tell_script('points', str(self._measures.value))
-        self._tell_script('labels', self._drawing.show(drawn, frame, ends, units.length))
+            self._points, self._lost = [], ''
+        self.tell_script('points', str(self._measures.value))
+        self.tell_script('opacity', str(self._controls['opacity'].value))
+        self.tell_script('labels', self._drawing.show(drawn, frame, ends, units.length))
         selected.describe(html_of_frame(drawn, frame, reference, units) if frame >= 0 else '')
-        self._tell_script('strip', refusals + strip)
+        self.tell_script('strip', refusals + strip)
+        self.tell_script('kept', json.dumps([
+            *selected.kept, *(['joint', *each] for each in self._joints.positions.items()),
+            *(['set', name, control.value] for name, control in self._controls.items())]))
 
-    def _tell_script(self, name: str, value: str) -> None:
+    def tell_script(self, name: str, value: str) -> None:
+        """Give the script a value, such as the errors of the file in HTML."""
         self._data[name].content = html_of_data(name, value)
 
     def _new_drawing(self) -> Drawing:
@@ -233,51 +173,60 @@ class Page:
         self._drawn_for = self._shown.loaded, *map(frozenset, hidden)
         visible = VisiblePart(self._shown, self._meshes, *hidden)
         self._reasons.content = html_of_reasons(visible.reasons)
-        self._tell_script('names', visible.names)
+        self.tell_script('names', visible.names)
         return Drawing(
             self._client.scene, next(self._node_names), visible,
-            lambda frame: self._events.put(partial(self._answer, f'click {frame}')))
+            lambda frame_id: self._events.put(partial(self._process, 'click', [frame_id])))
 
     # Controls
 
-    def _dock_panel(self) -> None:
-        panel, width = self._client.gui.main_panel, self._client.camera.image_width
-        panel.dock_right()
-        panel.set_width(min(_PANEL_WIDTH, int(_PANEL_PART * width)))
-        if width < _LEAST_WIDTH:
-            panel.minimize()
+    def _answer(self, text: str) -> None:
+        """Process requests of the script, a list in JSON; it ends at the first wrong one."""
+        with contextlib.suppress(ValueError, TypeError, LookupError, RecursionError):
+            for verb, *values in json.loads(text):
+                self._process(verb, values)
 
-    def _answer(self, ask: str) -> None:
-        """Process a click outside of the controls, or Escape."""
-        verb, _, frame = ask.partition(' ')
-        if verb in {'select', 'fold', 'hide'} or (verb == 'click' and not self._measures.value):
-            self._selected.answer(verb, int(frame))
-        elif verb == 'point':
-            self._points = [*self._points[:len(self._points) % 2], [*map(float, frame.split())]]
-        elif verb == 'dark':
-            self._dark.value = True
-        elif ask == 'end measuring':
-            self._measures.value = False
-        elif self._edit is not None and ask in self._edit.actions:
-            self._edit.actions[ask]()
+    def _process(self, verb: str, values: list[Any]) -> None:
+        panel, camera, scene = self._client.gui.main_panel, self._client.camera, self._drawn.scene
+        match verb, values:
+            case 'select' | 'relative' | 'fold' | 'hide', [str(frame_id)]:
+                self._selected.answer(verb, frame_id)
+            case 'click', [frame_id] if not self._measures.value:
+                self._selected.answer('select', frame_id)
+            case 'point', [number, x, y, z] if math.isfinite(x + y + z):
+                body = self._drawing.visible.bodies.item(number)
+                # The third one begins anew.
+                self._points[len(self._points) % 2:], self._lost = [
+                    (body, relative_pose(scene.pose_of(body), Pose(x, y, z)))], ''
+            case 'camera', [*numbers]:
+                camera.position, camera.look_at = np.array(numbers, float).reshape(2, 3)
+            case 'width', [width]:
+                panel.set_width(min(_PANEL_WIDTH, _PANEL_PART * width))
+                if width < _LEAST_WIDTH:
+                    panel.minimize()
+            case 'joint', [name, position] if math.isfinite(position):
+                self._joints.joints[name].move(position)
+            case 'set', [name, value]:
+                self._controls[name].value = value
+            case action, [] if self._edit is not None and action in self._edit.actions:
+                # Errors in it are not errors of the script.
+                self._events.put(self._edit.actions[action])
 
-    def _add_switches(self, order: float | None = None) -> viser.GuiFolderHandle:
+    def _add_switches(self, order: float | None = None) -> None:
         """Add the folder "Show"."""
-        switches = self._client.gui.add_folder('Show', expand_by_default=False, order=order)
-        with switches:
+        self._switches = self._client.gui.add_folder('Show', expand_by_default=False, order=order)
+        with self._switches:
             for name in dict.fromkeys((*self._shown.labels, *GROUPS)):
                 self._add_switch(name)
-        return switches
 
     def _add_switch(self, name: str) -> None:
         switch = self._client.gui.add_checkbox(printable(name), name not in self._hidden)
+        self._controls[name] = switch
         self._events.when(switch.on_update, lambda: (
             self._hidden.discard if switch.value else self._hidden.add)(name))
 
-    def _add_view_controls(
-        self, units: Units,
-    ) -> tuple[viser.GuiDropdownHandle[str], viser.GuiCheckboxHandle, viser.GuiCheckboxHandle]:
-        """Add the folder "View"; return the unit of angles, and the last two switches in it."""
+    def _add_view_controls(self, units: Units) -> None:
+        """Add the folder "View"."""
         gui = self._client.gui
         with gui.add_folder('View'):
             views = gui.add_button_group('view', ('home', *DIRECTIONS, 'zoom to'))
@@ -288,14 +237,13 @@ class Page:
             dark = gui.add_checkbox('dark background', initial_value=False)
             measures = gui.add_checkbox(
                 'measure points', initial_value=False, hint='of shapes, where they are clicked')
-        self._events.when(measures.on_update)
+        self._controls |= {control.label: control for control in (opacity, angles, dark, measures)}
+        self._angles, self._measures = angles, measures
+        for control in (opacity, angles, measures):
+            self._events.when(control.on_update)
         self._events.when(views.on_click, lambda: self._look(views.value))
-        self._events.when(
-            opacity.on_update, lambda: self._tell_script('opacity', str(opacity.value)))
-        self._events.when(angles.on_update)
         self._events.when(dark.on_update, lambda: gui.configure_theme(
             show_logo=False, show_share_button=False, dark_mode=dark.value))
-        return angles, dark, measures
 
     def _look(self, name: str) -> None:
         """Turn the camera to a view; "zoom to" shows the selected frame, link or model."""
@@ -308,6 +256,7 @@ class Page:
             view = view_of_bounds(bounds, view.position - view.look_at)
         client.camera.position, client.camera.look_at = view_in_window(view, client.camera.aspect)
         client.camera.up_direction = 0.0, 0.0, 1.0
+        client.camera.near, client.camera.far = visible.range_m
 
 
 class Pages:
@@ -342,11 +291,12 @@ class Pages:
         self._server, self.address = server_for_its_owner(
             port, self._title, scene.path, self.was_asked)
         self._errors = ''
-        self._server.initial_camera.fov = FIELD_OF_VIEW_RAD
-        self._place_camera(visible)
+        camera = self._server.initial_camera
+        camera.fov = FIELD_OF_VIEW_RAD
+        camera.position, camera.look_at = visible.home
+        camera.near, camera.far = visible.range_m
         self._wake, self._pages = threading.Event(), dict[int, Page]()
-        self._new_page = partial(
-            Page, wake=self._wake, meshes=meshes, find_change=find_change)
+        self._new_page = partial(Page, wake=self._wake, meshes=meshes, find_change=find_change)
         self._server.on_client_connect(lambda _: self._wake.set())
 
     def html(self) -> str:
@@ -358,22 +308,14 @@ class Pages:
             self._server.get_scene_serializer().as_html(), self._title,
             html_of_data('names', self._visible.names) + html_of_data('labels', labels))
 
-    def _place_camera(self, visible: VisiblePart) -> None:
-        """Place the camera of the tabs that are opened from now on."""
-        camera = self._server.initial_camera
-        camera.position, camera.look_at = visible.home
-        _set_range(camera, visible)
-
     def close(self) -> None:
         """End the server."""
         self._server.stop()
 
     def show(self, scene: Scene) -> None:
         """Show another scene; raise an SdfError as the constructor does."""
-        before, self._shown = self._shown, ShownScene(scene, self._options)
+        self._shown = ShownScene(scene, self._options)
         self._meshes.left_s = ALLOWANCE.processor_s
-        if not before.tree.frame_ids:
-            self._place_camera(VisiblePart(self._shown, self._meshes))
         self.show_errors(())
         for page in self._pages.values():
             page.show(self._shown)
@@ -382,7 +324,7 @@ class Pages:
         """Show the errors of a file, a line for each, over its last scene."""
         self._errors = html_of_lines('errors', lines)
         for page in self._pages.values():
-            page.show_errors(self._errors)
+            page.tell_script('errors', self._errors)
 
     def act(self, seconds: float) -> None:
         """Process the requests of browsers; wait no longer than this for them."""

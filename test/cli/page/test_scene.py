@@ -121,6 +121,14 @@ def test_dark_page_waits_for_its_file_and_says_when_its_program_has_ended(tab, t
     assert max(map(int, re.findall('[0-9]+', color)[:3])) < 100
 
 
+def test_panel_is_folded_in_a_small_window_of_a_display_with_small_pixels(tab, shown):
+    tab.call('Emulation.setDeviceMetricsOverride', width=700, height=300, deviceScaleFactor=2,
+             mobile=False)
+    tab.open(shown.address)
+    tab.wait_for("document.querySelector('[data-kept]') && !document.querySelector('.rows')")
+    tab.wait_for("document.querySelector('canvas').clientWidth > 600")
+
+
 LABELS_ARE_WHOLE = """[...document.querySelectorAll('p > label')].every(label => {
   const box = label.getBoundingClientRect(), text = label.parentElement;
   const limits = label.closest('.mantine-Flex-root').querySelectorAll('.mantine-Slider-markLabel');

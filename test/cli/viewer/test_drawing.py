@@ -86,7 +86,7 @@ def test_names_of_bodies_are_in_the_order_of_the_nodes(drawing_of):
     assert json.loads(drawing.visible.names)['bodies'] == [
         ['a, visual v', 'b, visual v'], ['a, collision c']]
     assert [copies.name for copies, _ in drawing._copies] == [
-        '/drawing/visuals/0', '/drawing/collisions/1']
+        '/drawing/visual 0', '/drawing/collision 1']
 
 
 def test_selected_frame_and_its_name_stand_at_its_new_pose(drawing_of):

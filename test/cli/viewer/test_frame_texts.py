@@ -121,6 +121,15 @@ def test_pose_in_another_frame_and_in_the_file(scene, frame, line):
         f'<div>{in_file}</div>')
 
 
+def test_pose_of_a_link_of_urdf_is_the_origin_of_its_joint():
+    shown = ShownScene(load_text(
+        b'<robot name="m"><link name="l"/><link name="k"/>\n'
+        b'<joint name="j" type="fixed"><parent link="l"/><child link="k"/>'
+        b'<origin xyz="0 0.5 0"/></joint></robot>', 'm.urdf'), TfOptions())
+    text = html_of_selection(shown, shown, shown.ids.index('k'), ROOT_IS_PARENT, Units())
+    assert 'm.urdf:2 relative_to="l": xyz 0.0000 0.5000 0.0000 m' in html.unescape(text)
+
+
 def test_name_is_text(scene):
     text = html_of(scene, HOSTILE)
     assert '<img' not in text

@@ -34,7 +34,7 @@ def gui(server):
 
 def controls(joints):
     """Return the slider and the field of each joint."""
-    return [(joint._slider, joint._field) for joint in joints._joints.values()]
+    return [(joint._slider, joint._field) for joint in joints.joints.values()]
 
 
 def test_all_joints_go_home_and_to_the_middle(gui):

@@ -8,21 +8,26 @@ import json
 import re
 from threading import Event
 
+import numpy as np
 import pytest
 
 pytest.importorskip('viser', reason='needs viser')
+from viser import MainPanelHandle
 
 from sdf_pose_bridge import load
-from sdf_pose_bridge.cli.viewer.page import Page, Pages, SelectedFrame
-from sdf_pose_bridge.cli.viewer.server import Events
+from sdf_pose_bridge.cli.viewer.drawing import HIDDEN_AT_FIRST
+from sdf_pose_bridge.cli.viewer.page import Page, Pages
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.export.pose_setting import PoseChange
 from sdf_pose_bridge.file_change import FileChange
-from sdf_pose_bridge.geometry.units import DEGREES, Units
+from sdf_pose_bridge.geometry.units import DEGREES, RADIANS, Units
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.tf.tree import TfOptions
 
 TEXT = """<sdf version="1.11"><model name="m"><link name="l"/></model></sdf>"""
+BOX = '<visual name="v"><geometry><box/></geometry></visual>'
+JOINT = """</link><link name="k"/><joint name="j" type="prismatic"><parent>l</parent>
+  <child>k</child><axis><xyz>0 0 1</xyz></axis></joint><link name="other">"""
 MESH = '<geometry><mesh><uri>&lt;b&gt;</uri></mesh></geometry>'
 
 
@@ -55,14 +60,28 @@ def nodes(page, *names):
     return [page._client.scene.get_handle_by_name(f'{prefix}/{name}') for name in names]
 
 
+def ask(page, *request):
+    page._answer(json.dumps([request]))
+
+
+def measure(page):
+    """Switch measuring on, or off."""
+    ask(page, 'set', 'measure points', not page._measures.value)
+
+
 def select(page, frame):
-    page._answer(f'select {page._shown.ids.index(frame)}')
+    ask(page, 'select', frame)
     page._refresh()
 
 
+def given(page, name):
+    """What the script is given under a name."""
+    (data,) = re.findall(f'data-{name}="([^"]*)"', page._data[name].content)
+    return html.unescape(data)
+
+
 def labels(page):
-    (data,) = re.findall('data-labels="([^"]*)"', page._data['labels'].content)
-    return json.loads(html.unescape(data))['labels']
+    return json.loads(given(page, 'labels'))['labels']
 
 
 def test_name_moves_with_its_frame_when_the_file_is_read_again(page_of, scene_of):
@@ -74,17 +93,17 @@ def test_name_moves_with_its_frame_when_the_file_is_read_again(page_of, scene_of
 
 
 def test_what_is_switched_off_is_not_drawn(page_of):
-    page = page_of('<visual name="v"><geometry><box/></geometry></visual>')
-    assert all(nodes(page, 'grid', 'visuals/0'))
+    page = page_of(BOX)
+    assert all(nodes(page, 'grid', 'visual 0'))
     set_switches(page, False, 'visuals', 'grid')
-    assert not any(nodes(page, 'grid', 'visuals/0'))
+    assert not any(nodes(page, 'grid', 'visual 0'))
 
 
 def test_drawing_shares_no_name_with_the_one_before(page_of):
-    page = page_of('<visual name="v"><geometry><box/></geometry></visual>')
-    (before,) = nodes(page, 'visuals/0')
+    page = page_of(BOX)
+    (before,) = nodes(page, 'visual 0')
     set_switches(page, False, 'grid')
-    (after,) = nodes(page, 'visuals/0')
+    (after,) = nodes(page, 'visual 0')
     assert before.name != after.name
     assert page._client.scene.get_handle_by_name(before.name) is None
 
@@ -134,37 +153,110 @@ def test_line_joins_the_frames_that_are_measured(page_of):
     page = page_of('<sensor name="s" type="imu"><pose>1 2 3 0 0 0</pose></sensor>')
     select(page, 'l')
     assert page._drawing._measured.points.shape == (0, 2, 3)
-    page._selected._measure_from_here()
+    ask(page, 'relative', 'l')
     select(page, 'l/s')
     assert page._drawing._measured.points.tolist()[-1] == [[0, 0, 0], [1, 2, 3]]
     assert labels(page)[0] == ['3.7417 m', True, 0.5, 1.0, 1.5]
 
 
 def test_each_click_on_a_shape_adds_a_point_to_measure_and_the_third_begins_anew(page_of):
-    page = page_of('')
-    page._measures.value = True
-    for point, line_count in (('0 0 1', 3), ('0 2 1', 7), ('3 0 0', 3), ('3 0 4', 7)):
-        page._answer(f'point {point}')
+    page = page_of(BOX)
+    measure(page)
+    for point, line_count in (((0, 0, 1), 3), ((0, 2, 1), 7), ((3, 0, 0), 3), ((3, 0, 4), 7)):
+        ask(page, 'point', 0, *point)
         page._refresh()
         # Each point is marked by three lines.
         assert len(page._drawing._measured.points) == line_count
     assert page._drawing._measured.points.tolist()[-1] == [[3, 0, 0], [3, 0, 4]]
     assert labels(page)[0] == ['4.0000 m', True, 3.0, 0.0, 2.0]
-    page._answer('end measuring')
-    page._refresh()
-    page._measures.value = True
-    page._refresh()
+    for _ in range(2):
+        measure(page)
+        page._refresh()
     assert len(page._drawing._measured.points) == 0
+
+
+def test_measured_points_stay_on_their_bodies(page_of, scene_of):
+    page = page_of(BOX)
+    measure(page)
+    ask(page, 'point', 0, 0, 0, 0.5)
+    ask(page, 'point', 0, 0, 0.5, 0)
+    page.show(scene_of(BOX.replace(
+        '<geometry>', '<pose degrees="1">1 0 0 90 0 0</pose><geometry>')))
+    assert page._drawing._measured.points[-1] == pytest.approx(
+        np.array([[1, -0.5, 0], [1, 0, 0.5]]))
+    page.show(scene_of(BOX.replace('visual', 'collision')))
+    assert 'the points are gone' in given(page, 'strip')
+    for _ in range(2):
+        measure(page)
+        page._refresh()
+    assert 'are gone' not in given(page, 'strip')
+
+
+@pytest.mark.parametrize('text', [
+    '', '[', '3', '{"a": 1}', '[' * 100_000, '[3]', '[[]]', '[["point"]]', '[["point", 0]]',
+    '[["point", 0, 0, 0]]', '[["point", 1, 0, 0, 0]]',
+    '[["point", 0, "a", 0, 0]]', '[["point", 0, null, 0, 0]]', '[["point", 0, 1, 2, 3, 4]]',
+    '[["point", 0, 1e999, 0, 0]]', '[["point", [], 0, 0, 0]]', '[["camera", 1, 2]]',
+    '[["camera", 1, 2, "a", 0, 0, 0]]', '[["width", -1]]', '[["width", "a"]]',
+    '[["joint", "x", 1]]', '[["joint", "j", "a"]]', '[["joint", "j", 1e999]]',
+    '[["set", "opacity", "a"]]', '[["set", "opacity", null]]', '[["set", "x", 1.0]]',
+    '[["set", [], 1.0]]', '[["set", "opacity"]]',
+    '[["select", 3]]', '[["fold"]]', '[["relative", "x"]]', '[["write to file"]]'])
+def test_wrong_request_of_the_script_does_nothing(page_of, text):
+    page = page_of(BOX + JOINT, find_change=print)
+    measure(page)
+    page._refresh()
+    before = given(page, 'kept')
+    page._answer(text)
+    page._refresh()
+    assert (given(page, 'kept'), page._points) == (before, [])
+
+
+@pytest.mark.parametrize(('width', 'panel'), [(2000, [360]), (800, [280]), (700, [245, 'folded'])])
+def test_panel_leaves_room_for_the_scene_in_a_window(page_of, monkeypatch, width, panel):
+    page, done = page_of(''), []
+    monkeypatch.setattr(MainPanelHandle, 'set_width', lambda _, width: done.append(round(width)))
+    monkeypatch.setattr(MainPanelHandle, 'minimize', lambda _: done.append('folded'))
+    ask(page, 'width', width)
+    assert done == panel
+
+
+def test_unknown_unit_of_angles_is_radians(page_of):
+    page = page_of('')
+    ask(page, 'set', 'angles', 'x')
+    page._refresh()
+    assert page.units.angle is RADIANS
+
+
+def test_page_of_the_next_start_is_as_the_one_before(page_of, server):
+    first = page_of(JOINT)
+    for request in (
+            ('select', 'k'), ('relative', 'l'), ('fold', 'l'), ('hide', 'other'),
+            ('joint', 'j', 0.25), ('set', 'visuals', False), ('set', 'opacity', 0.5),
+            ('set', 'angles', 'deg'), ('set', 'dark background', True)):
+        ask(first, *request)
+    first._refresh()
+    kept = given(first, 'kept')
+    server.scene.reset()
+    server.gui.reset()
+    second = page_of(JOINT)
+    assert kept != given(second, 'kept')
+    second._answer(kept)
+    while second._hidden != {*HIDDEN_AT_FIRST, 'visuals'}:
+        second.act()
+    second._refresh()
+    assert given(second, 'kept') == kept
+    assert second._shown.positions == {'j': 0.25}
 
 
 def test_click_on_a_frame_selects_it_only_where_nothing_is_measured(page_of):
     page = page_of('')
-    page._measures.value = True
-    page._answer('click 0')
+    measure(page)
+    ask(page, 'click', 'l')
     assert page._selected.frame == -1
-    page._answer('end measuring')
-    page._answer('click 0')
-    assert page._selected.frame == 0
+    measure(page)
+    ask(page, 'click', 'l')
+    assert page._shown.ids[page._selected.frame] == 'l'
 
 
 def test_bounds_of_a_frame_have_its_axes_and_bodies(page_of):
@@ -182,42 +274,14 @@ def test_page_says_so_when_collisions_are_switched_on(page_of):
     assert '1 shape cannot be drawn: the mesh &quot;&lt;b&gt;&quot;: ' in page._reasons.content
 
 
-# The selected frame
-
-def shown_scene(*frames):
-    text = ''.join(f'<frame name="{name}"/>' for name in frames)
-    scene = load_text(
-        f'<sdf version="1.11"><world name="w">{text}</world></sdf>'.encode(), 'cell.sdf')
-    return ShownScene(scene, TfOptions())
-
-
-@pytest.fixture
-def selected(server):
-    selected = SelectedFrame(server.gui, server.gui.add_folder(''), Events(Event()))
-    selected.list_frames(shown_scene('a', 'b', 'c'))
-    return selected
-
-
-def test_frame_that_is_gone_is_not_selected(selected):
-    selected.answer('select', 3)
-    assert selected.frame == -1
-
-
-def test_selected_frame_stays_where_others_are_listed(selected):
-    selected.answer('select', 1)
-    selected.list_frames(shown_scene('b'))
-    assert selected.frame == 0
-    selected.list_frames(shown_scene('a'))
-    assert selected.frame == -1
-
-
-def test_camera_of_a_file_that_was_empty_sees_all_of_the_mended_one(mesh_reader):
+def test_camera_of_a_file_that_was_empty_sees_all_of_the_mended_one(mesh_reader, server):
     empty, large = (
         load_text(f'<sdf version="1.11"><world name="w">{content}</world></sdf>', 'w.sdf')
         for content in (
             '', '<frame name="a"/><frame name="b"><pose>1000 0 0 0 0 0</pose></frame>'))
     with closing(Pages(empty, TfOptions(), 0, Units(), mesh_reader)) as pages:
         pages.show(large)
-        camera = pages._server.initial_camera
-        assert camera.far > 10_000.0
-        assert camera.look_at[0] > 100.0
+        pages._server.get_clients = lambda: {1: server}
+        pages.act(0.0)
+        assert server.camera.far > 10_000.0
+        assert server.camera.look_at[0] > 100.0

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The gizmo and the numbers that move the selected frame, and the buttons that write its pose."""
+"""The tree in which a frame is selected, and the gizmo, numbers and buttons that move it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,12 @@ from typing import TypeAlias
 import viser
 
 from sdf_pose_bridge import Pose, Scene, SdfError
-from sdf_pose_bridge.cli.viewer.frame_texts import escaped, html_of_difference, html_of_lines
+from sdf_pose_bridge.cli.viewer.frame_texts import (
+    escaped,
+    html_of_difference,
+    html_of_lines,
+    html_of_tree,
+)
 from sdf_pose_bridge.cli.viewer.server import Events
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.export.pose_setting import Lookup, PoseChange
@@ -28,12 +33,86 @@ from sdf_pose_bridge.geometry.poses import pose_product, relative_pose
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
 from sdf_pose_bridge.geometry.units import POSE_LABELS, Units
 from sdf_pose_bridge.tf.lookup import lookup_from_scene
+from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 
 FindChange: TypeAlias = Callable[[Scene, int, Pose, Lookup], PoseChange]
 """Finds a change as :func:`~sdf_pose_bridge.export.pose_setting.pose_change` does."""
 
+_MOST_CHOICES = 1000
 _SEVERAL = re.compile(r'\s|[\[({<:=]|[,;].*[,;]', re.DOTALL)
 """A text of one number has none of these, but for a comma of thousands."""
+
+
+class SelectedFrame:
+    """A given folder with the tree of frames, and one of the selected frame."""
+
+    def __init__(self, gui: viser.GuiApi, folder: viser.GuiFolderHandle, events: Events) -> None:
+        self._ids: tuple[str, ...] = ()
+        self._frame_id = ''
+        self._folded: set[str] = set()
+        self.hidden: set[str] = set()
+        """The ids of the frames that are hidden with all that is in them."""
+        with folder:
+            self._search = gui.add_text('search', '')
+            self._rows = gui.add_html('')
+        self._folder = gui.add_folder('Selected frame', visible=False)
+        with self._folder:
+            self._choice = gui.add_dropdown(
+                'relative to', ('',), hint='for the pose and the distance')
+            measure = gui.add_button(
+                'measure from this frame', hint='to frames that are selected next', color='gray')
+            self._description = gui.add_html('')
+        events.when(self._search.on_update)
+        events.when(self._choice.on_update)
+        events.when(measure.on_click, lambda: self._refer_to(self._frame_id))
+
+    @property
+    def kept(self) -> list[list[str]]:
+        """What :meth:`answer` takes so that another page shows the same."""
+        return [['select', self._frame_id], ['relative', self._choice.value],
+                *(['fold', each] for each in self._folded),
+                *(['hide', each] for each in self.hidden)]
+
+    @property
+    def frame(self) -> int:
+        """Index of the selected frame, or ``ROOT_IS_PARENT``, which is -1, for none."""
+        return self._index(self._frame_id)
+
+    @property
+    def reference(self) -> int:
+        """Index of the frame to which its pose is relative, or ``ROOT_IS_PARENT``."""
+        return self._index(self._choice.value)
+
+    def _index(self, frame_id: str) -> int:
+        return self._ids.index(frame_id) if frame_id in self._ids else ROOT_IS_PARENT
+
+    def answer(self, verb: str, frame_id: str) -> None:
+        """Select a frame, show poses "relative" to it, or "fold" or "hide" it or undo this."""
+        if verb == 'select':
+            self._frame_id = frame_id
+        elif verb == 'relative':
+            self._refer_to(frame_id)
+        else:
+            ids = self._folded if verb == 'fold' else self.hidden
+            ids ^= {frame_id}
+
+    def list_frames(self, shown: ShownScene) -> None:
+        """List the frames of a scene; the selected one stays."""
+        self._ids = shown.tree.frame_ids
+        choices = (shown.tree.root_frame, *self._ids[:_MOST_CHOICES])
+        if choices != self._choice.options:
+            self._choice.options = choices
+        self._rows.content = html_of_tree(
+            shown, self._search.value, self._frame_id, self._folded, self.hidden)
+
+    def describe(self, html: str) -> None:
+        """Show the description of the selected frame; empty for none."""
+        self._folder.visible = bool(html)
+        self._description.content = html
+
+    def _refer_to(self, frame_id: str) -> None:
+        if frame_id in self._choice.options:
+            self._choice.value = frame_id
 
 
 class PoseEdit:

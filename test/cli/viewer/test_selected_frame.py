@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""How the numbers of a pose are edited; page/ drags a frame and types."""
+"""How a frame is selected, and the numbers of its pose are edited; page/ drags it and types."""
 
 import math
 import re
@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip('viser', reason='needs viser')
 
-from sdf_pose_bridge.cli.viewer.pose_edit import PoseEdit
+from sdf_pose_bridge.cli.viewer.selected_frame import PoseEdit, SelectedFrame
 from sdf_pose_bridge.cli.viewer.server import Events
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.errors import ElementInvalidError
@@ -278,3 +278,30 @@ def test_frame_of_the_numbers_is_named(edit):
     assert 'select a frame' in edit._frame_of_numbers.content
     show(edit)
     assert 'free in <b>m</b>' in edit._frame_of_numbers.content
+
+
+def shown_scene(*frames):
+    text = ''.join(f'<frame name="{name}"/>' for name in frames)
+    scene = load_text(
+        f'<sdf version="1.11"><world name="w">{text}</world></sdf>'.encode(), 'cell.sdf')
+    return ShownScene(scene, TfOptions())
+
+
+@pytest.fixture
+def selected(server):
+    selected = SelectedFrame(server.gui, server.gui.add_folder(''), Events(Event()))
+    selected.list_frames(shown_scene('a', 'b', 'c'))
+    return selected
+
+
+def test_frame_that_is_gone_is_not_selected(selected):
+    selected.answer('select', 'gone')
+    assert selected.frame == -1
+
+
+def test_selected_frame_stays_where_others_are_listed(selected):
+    selected.answer('select', 'b')
+    selected.list_frames(shown_scene('b'))
+    assert selected.frame == 0
+    selected.list_frames(shown_scene('a'))
+    assert selected.frame == -1
