@@ -68,7 +68,7 @@ class SelectedFrame:
 
     @property
     def kept(self) -> list[list[str]]:
-        """What :meth:`answer` takes so that another page shows the same."""
+        """Arguments of :meth:`answer` with which another page shows the same."""
         return [['select', self._frame_id], ['relative', self._choice.value],
                 *(['fold', each] for each in self._folded),
                 *(['hide', each] for each in self.hidden)]
