@@ -223,20 +223,18 @@ def _picture(page: str, output: Path) -> bytes:
     if browser is None:
         msg = 'a picture needs Chrome or Chromium; a file that ends with .html does not'
         raise FileNotFoundError(msg)
-    # A browser of snap has a /tmp of its own, and does not see hidden folders. Others leave files
-    # there. Other processes of a browser may still write after the first one has ended.
+    # A browser of snap has a /tmp of its own, and does not see hidden folders. Other processes of
+    # a browser may still write after the first one has ended.
     with signals_wait() as signals, tempfile.TemporaryDirectory(
             prefix='sdf_pose_view_', dir=output.absolute().parent,
-            ignore_cleanup_errors=True) as folder, tempfile.TemporaryDirectory(
-            ignore_cleanup_errors=True) as other_folder:
+            ignore_cleanup_errors=True) as folder:
         source, picture = Path(folder, 'page.html'), Path(folder, 'picture.png')
         source.write_text(page + _ONLY_THE_SCENE, encoding='utf-8')
         command = [browser, *_BROWSER_OPTIONS, f'--user-data-dir={folder}',
                    f'--screenshot={picture}', source.as_uri()]
         ends_at = time.monotonic() + _MOST_SECONDS
         with subprocess.Popen(
-                command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                env={**os.environ, 'TMPDIR': other_folder}) as process:
+                command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
             while process.poll() is None and not signals and time.monotonic() < ends_at:
                 time.sleep(_PERIOD_S)
             # It ends its other processes, unless it is killed.

@@ -105,7 +105,6 @@ def test_picture_by_a_browser_that_does_not_reach_all_folders(
 ENDING_ITS_PARENT = """#!/bin/sh
 trap 'exit 0' TERM
 for word; do case $word in --user-data-dir=*) folder=${word#*=};; esac; done
-touch "$TMPDIR/left"
 kill -%d "$PPID"
 while :; do touch "$folder/left" || exit 1; done
 """
