@@ -75,7 +75,12 @@ class Page:
                 for name in ('errors', 'strip', 'names', 'labels', 'opacity', 'points', 'kept')}
             gui.add_html('<div class="asked"></div>')
             asked = gui.add_text('asked', '')
-        self._events.when(asked.on_update, lambda: self._answer(asked.value.partition(' ')[2]))
+
+        # The next request may come before this one is processed.
+        @asked.on_update
+        async def put(_: object) -> None:
+            self._events.put(partial(self._answer, asked.value.partition(' ')[2]))
+
         folder_of_frames = gui.add_folder('Frames')
         # They are in view where a frame is clicked in the tree.
         self._edit = None if find_change is None else PoseEdit(

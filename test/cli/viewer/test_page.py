@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the page shows, without a browser; page/ uses it in one."""
 
+import asyncio
 from contextlib import closing
 import html
 import json
@@ -210,6 +211,21 @@ def test_wrong_request_of_the_script_does_nothing(page_of, text):
     page._answer(text)
     page._refresh()
     assert (given(page, 'kept'), page._points) == (before, [])
+
+
+def test_requests_of_the_script_that_come_at_once_are_all_processed(page_of):
+    page = page_of(JOINT)
+    (asked,) = (each for each in page._client.gui._gui_input_handle_from_uuid.values()
+                if each.label == 'asked')
+    for number, request in enumerate((['select', 'k'], ['fold', 'l'])):
+        # As viser does with a message of a browser.
+        asked._impl.value = f'{number} {json.dumps([request])}'
+        for told in asked._impl.update_cb:
+            asyncio.run(told(None))
+    page.act()
+    kept = json.loads(given(page, 'kept'))
+    assert ['select', 'k'] in kept
+    assert ['fold', 'l'] in kept
 
 
 @pytest.mark.parametrize(('width', 'panel'), [(2000, [360]), (800, [280]), (700, [245, 'folded'])])
