@@ -33,8 +33,10 @@ else:
 
 def pytest_configure(config):
     """Give tests an environment of their own, before their modules import ROS."""
-    # All that was made is removed, and all processes end, where this is ended from outside.
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    # All that was made is removed, and all processes end, where this is ended from outside; also
+    # in the background of a shell, which ignores signals there.
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.default_int_handler)
     if not hasattr(config, 'workerinput'):
         config.add_cleanup(partial(remove_dead_segments, time.time()))
     home = tempfile.TemporaryDirectory(prefix='sdf_pose_bridge_home_')
