@@ -32,7 +32,7 @@ from sdf_pose_bridge.cli.arguments import (
 )
 from sdf_pose_bridge.cli.input_files import loader, scene_from_file, STANDARD_INPUT
 from sdf_pose_bridge.cli.printing import CommandError, print_problems
-from sdf_pose_bridge.cli.viewer import LIBRARIES
+from sdf_pose_bridge.cli.viewer import LIBRARIES, UntestedViserError
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.export.pose_setting import pose_change
 from sdf_pose_bridge.file_change import replace_file, signals_wait
@@ -116,7 +116,7 @@ def run(options: argparse.Namespace) -> int:
                 Units(options.length_unit, options.angle_unit), meshes,
                 partial(call, partial(pose_change, load=loader(path, options, shapes=True)))
                 if options.edit else None)
-        except NotImplementedError as error:
+        except UntestedViserError as error:
             raise CommandError(str(error)) from error
         with contextlib.closing(pages):
             for line in () if errors else pages.reasons:

@@ -4,3 +4,7 @@
 
 LIBRARIES = ('viser>=1.1.1,<1.2', 'trimesh>=5.0,<6', 'pycollada>=0.7.2,<0.10')
 """The libraries that only this room needs, in the tested releases; as in setup.py."""
+
+
+class UntestedViserError(Exception):
+    """The installed viser lacks a property of the tested releases; the text names both."""

@@ -30,7 +30,7 @@ from websockets.asyncio.server import ServerConnection
 from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
-from sdf_pose_bridge.cli.viewer import LIBRARIES
+from sdf_pose_bridge.cli.viewer import LIBRARIES, UntestedViserError
 from sdf_pose_bridge.cli.viewer.frame_texts import html_of_data
 
 _ADDRESS = '127.0.0.1'
@@ -111,7 +111,7 @@ def server_for_its_owner(
     :param was_asked: set when a browser asks for the page.
     :return: the server, and the address of its page: with a secret in its path, without which
         requests are rejected.
-    :raises NotImplementedError: if this cannot be done with the installed viser.
+    :raises UntestedViserError: if this cannot be done with the installed viser.
     """
     rich.get_console().quiet = True
     # Otherwise connections that a browser opens in advance and closes are logged as errors.
@@ -150,7 +150,7 @@ def server_for_its_owner(
     if not guarded:
         msg = (f'viser {viser.__version__} does not work as the releases that this is tested with '
                f'({LIBRARIES[0]})')
-        raise NotImplementedError(msg)
+        raise UntestedViserError(msg)
     server.gui.set_panel_label(title)
     server.gui.configure_theme(show_logo=False, show_share_button=False)
     # The environment map of viser makes every color pale.

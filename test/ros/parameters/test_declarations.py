@@ -2,8 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Declarations of parameters: what settings of them mean together."""
 
-import pytest
+import json
+import re
 
+import pytest
+from sdf_texts import joint, model_file, plugin
+
+from sdf_pose_bridge.cli.main import main
 from sdf_pose_bridge.export.published_scene import LoadRequest
 from sdf_pose_bridge.ros.parameters.declarations import Declaration, DECLARATIONS
 from sdf_pose_bridge.ros.parameters.given import settings_from_values
@@ -36,6 +41,24 @@ def test_a_field_has_the_default_value_of_its_parameter(record):
         name: default for name, default in record._field_defaults.items() if name not in DERIVED}
     assert {name: DECLARATIONS[name].convert(DECLARATIONS[name].default)
             for name in defaults} == defaults
+
+
+def test_gz_bridge_writes_parameters_that_the_node_takes(tmp_path, capsys):
+    plugins = (plugin('JointStatePublisher')
+               + plugin('PosePublisher', '<publish_model_pose>true</publish_model_pose>'))
+    (tmp_path / 'm.sdf').write_text(model_file(
+        '<link name="l"/><link name="k"/>'
+        + joint('<parent>l</parent><child>k</child>', 'j', 'revolute') + plugins))
+    assert main([
+        'gz_bridge', str(tmp_path / 'm.sdf'), '--node', '--world-name', 'w', '--skip-missing',
+        '-I', str(tmp_path)]) == 0
+    written = {name: json.loads(value) for name, value in re.findall(
+        r'^ {4}(\w+): (.*)$', capsys.readouterr().out, re.MULTILINE)}
+    assert written.pop('use_sim_time') is True
+    assert written.keys() == {
+        'sdf_file', 'resource_paths', 'on_missing_include', 'model_name', 'use_joint_states',
+        'joint_states_topics', 'model_pose_topics', 'model_pose_frames'}
+    assert settings_from_values(written).values['model_pose_frames']
 
 
 @pytest.mark.parametrize('name', DECLARATIONS)
